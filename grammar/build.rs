@@ -1,0 +1,3 @@
+//! Generates the parser tables from `src/osl.lalrpop`.
+
+fn main() {}
