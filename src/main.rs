@@ -1,2 +1,3 @@
-//! x
-fn main(){}
+//! The velour command.
+
+fn main() {}

@@ -1,0 +1,57 @@
+//! Columns: the values of many shading points, one array a component.
+
+use glam::Vec3;
+
+/// Three columns that hold one triple a lane.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Column3 {
+    /// First components.
+    pub x: Vec<f32>,
+    /// Second components.
+    pub y: Vec<f32>,
+    /// Third components.
+    pub z: Vec<f32>,
+}
+
+impl Column3 {
+    /// A column of `len` zero triples.
+    pub fn zeros(len: usize) -> Self {
+        Column3 { x: vec![0.0; len], y: vec![0.0; len], z: vec![0.0; len] }
+    }
+
+    /// A column of `len` equal triples.
+    pub fn splat(value: Vec3, len: usize) -> Self {
+        Column3 { x: vec![value.x; len], y: vec![value.y; len], z: vec![value.z; len] }
+    }
+
+    /// The number of lanes.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// True when there is no lane.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Makes room for exactly `len` lanes; new ones are zero.
+    pub fn resize(&mut self, len: usize) {
+        self.x.resize(len, 0.0);
+        self.y.resize(len, 0.0);
+        self.z.resize(len, 0.0);
+    }
+
+    /// The triple of one lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.x[lane], self.y[lane], self.z[lane])
+    }
+
+    /// Stores the triple of one lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, value: Vec3) {
+        self.x[lane] = value.x;
+        self.y[lane] = value.y;
+        self.z[lane] = value.z;
+    }
+}

@@ -1,0 +1,3 @@
+//! Numbers without a language: columns, elementary functions, frames, warps, noise.
+
+pub mod columns;
