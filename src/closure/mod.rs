@@ -1,1 +1,3 @@
-//! The closure room.
+//! The closure tree: print it, flatten it to weighted lobes, scale bases by albedo, evaluate and sample.
+
+pub mod tree;
