@@ -1,1 +1,46 @@
-//! The check room.
+//! Syntax tree to typed shader: names, types, overloads. Every mistake a user can make ends here, as a diagnostic.
+//!
+//! The checker goes on after a mistake: a wrong expression becomes a stand-in that no later message complains about.
+
+mod call;
+pub mod codes;
+mod context;
+mod convert;
+mod declare;
+mod expr;
+mod format;
+mod initial;
+mod operator;
+mod place;
+mod statement;
+pub mod typed;
+
+use crate::lang::closures::ClosureTable;
+use context::Checker;
+use velour_grammar::ast::{File, Item};
+use velour_grammar::{Diagnostic, Diagnostics, Span};
+
+/// Checks one translation unit. Gives the shader when there is no error, and all messages in any case.
+pub fn check(file: &File, closures: &ClosureTable) -> (Option<typed::Shader>, Diagnostics) {
+    let mut checker = Checker::new(closures);
+    let mut shader = None;
+    for item in &file.items {
+        match item {
+            Item::Struct(decl) => checker.declare_struct(decl),
+            Item::Function(decl) => checker.declare_function(decl),
+            Item::Shader(decl) => {
+                if let Some((_, first)) = &shader {
+                    let diagnostic = Diagnostic::error("E0401", decl.span, "a file holds one shader, this is the second");
+                    checker.report(diagnostic.also(*first, "the first one").help("move it to a file of its own"));
+                } else {
+                    shader = Some((checker.declare_shader(decl), decl.span));
+                }
+            }
+        }
+    }
+    if shader.is_none() {
+        let message = "there is no shader in this file";
+        checker.report(Diagnostic::error("E0402", Span::NONE, message).help("write `surface name() { … }`"));
+    }
+    checker.finish(shader.map(|(shader, _)| shader))
+}

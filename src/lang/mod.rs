@@ -1,5 +1,7 @@
 //! The nouns of the language: types, symbols, and the tables of closures, builtins and shader globals.
 
+pub mod builtins;
 pub mod closures;
+pub mod globals;
 pub mod symbols;
 pub mod types;

@@ -1,0 +1,31 @@
+//! The stable codes of the checker's messages, one line each.
+
+/// Code and meaning of every message.
+pub const CODES: &[(&str, &str)] = &[
+    ("E0401", "a second shader in one file"),
+    ("E0402", "a file without a shader"),
+    ("E0403", "a name that is not declared"),
+    ("E0404", "a name declared twice in one scope"),
+    ("E0405", "a function that is not declared"),
+    ("E0406", "no overload fits the arguments"),
+    ("E0407", "a type name that is not declared"),
+    ("E0408", "a shader parameter without a default"),
+    ("E0409", "a function called but never defined"),
+    ("E0410", "a function that calls itself"),
+    ("E0411", "a closure keyword that does not exist or has a wrong value"),
+    ("E0412", "a builtin that velour does not run yet"),
+    ("E0501", "a value of the wrong type"),
+    ("E0502", "an operator that does not take these types"),
+    ("E0503", "an assignment to something that cannot be assigned"),
+    ("E0504", "an index into something that has no elements"),
+    ("E0505", "a field that does not exist"),
+    ("E0506", "an initialiser list that does not fit"),
+    ("E0507", "a variable that cannot be declared so"),
+    ("E0508", "a return that does not fit its function"),
+    ("E0509", "break or continue outside a loop"),
+    ("E0510", "a constructor that does not take these arguments"),
+    ("E0511", "a format string that does not fit its arguments"),
+    ("E0512", "an index outside its array"),
+    ("W0501", "a float stored in an int"),
+    ("W0502", "an ambiguous call"),
+];

@@ -1,0 +1,193 @@
+//! The checker's state: scopes, variables, functions, and the messages so far.
+
+use super::typed::{Function, FunctionId, Shader, VarId, Variable};
+use crate::lang::closures::ClosureTable;
+use crate::lang::globals::GLOBALS;
+use crate::lang::types::{Struct, Type};
+use std::collections::HashMap;
+use std::sync::Arc;
+use velour_grammar::{Diagnostic, Diagnostics, Span};
+
+/// What a name means in a scope.
+#[derive(Clone)]
+pub(super) enum Symbol {
+    Var(VarId),
+    Functions(Vec<FunctionId>),
+    Struct(Arc<Struct>),
+}
+
+/// The head of a function, known before its body is.
+pub(super) struct Signature {
+    pub name: String,
+    pub returns: Type,
+    pub formals: Vec<(Type, bool)>,
+    pub span: Span,
+    /// Called functions and where, to find recursion.
+    pub calls: Vec<(FunctionId, Span)>,
+}
+
+/// The state of one run of the checker.
+pub(super) struct Checker<'a> {
+    pub closures: &'a ClosureTable,
+    pub diagnostics: Diagnostics,
+    pub scopes: Vec<HashMap<String, Symbol>>,
+    pub variables: Vec<Variable>,
+    /// Whether each variable may be assigned.
+    pub writable: Vec<bool>,
+    pub signatures: Vec<Signature>,
+    pub bodies: Vec<Option<Arc<Function>>>,
+    /// What `return` gives here: `None` in a shader body.
+    pub returns: Option<Type>,
+    pub loops: u32,
+    /// The function whose body is being checked.
+    pub inside: Option<FunctionId>,
+    /// Calls made by the shader body itself.
+    pub shader_calls: Vec<(FunctionId, Span)>,
+}
+
+impl<'a> Checker<'a> {
+    pub fn new(closures: &'a ClosureTable) -> Self {
+        let mut checker = Checker {
+            closures,
+            diagnostics: Diagnostics::default(),
+            scopes: vec![HashMap::new()],
+            variables: Vec::new(),
+            writable: Vec::new(),
+            signatures: Vec::new(),
+            bodies: Vec::new(),
+            returns: None,
+            loops: 0,
+            inside: None,
+            shader_calls: Vec::new(),
+        };
+        for &(name, global, base, writable) in GLOBALS {
+            let id = VarId(checker.variables.len() as u32);
+            let (ty, global) = (Type::of(base), Some(global));
+            checker.variables.push(Variable { name: name.to_owned(), ty, span: Span::NONE, global });
+            checker.writable.push(writable);
+            checker.scopes[0].insert(name.to_owned(), Symbol::Var(id));
+        }
+        checker
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    pub fn error(&mut self, code: &'static str, span: Span, message: impl Into<String>) {
+        self.report(Diagnostic::error(code, span, message));
+    }
+
+    /// The meaning of a name, innermost scope first.
+    pub fn lookup(&self, name: &str) -> Option<&Symbol> {
+        self.scopes.iter().rev().find_map(|scope| scope.get(name))
+    }
+
+    /// All functions of a name, innermost scope first.
+    pub fn functions_named(&self, name: &str) -> Vec<FunctionId> {
+        let mut found = Vec::new();
+        for scope in self.scopes.iter().rev() {
+            if let Some(Symbol::Functions(ids)) = scope.get(name) {
+                found.extend(ids.iter().rev());
+            }
+        }
+        found
+    }
+
+    /// Runs `body` in a scope of its own.
+    pub fn scoped<T>(&mut self, body: impl FnOnce(&mut Self) -> T) -> T {
+        self.scopes.push(HashMap::new());
+        let result = body(self);
+        self.scopes.pop();
+        result
+    }
+
+    /// Makes a variable and binds its name in the innermost scope.
+    pub fn bind(&mut self, name: &str, ty: Type, span: Span, writable: bool) -> VarId {
+        let id = VarId(self.variables.len() as u32);
+        self.variables.push(Variable { name: name.to_owned(), ty, span, global: None });
+        self.writable.push(writable);
+        let earlier = self.scopes.last_mut().and_then(|scope| scope.insert(name.to_owned(), Symbol::Var(id)));
+        if let Some(Symbol::Var(earlier)) = earlier {
+            let before = self.variables[earlier.0 as usize].span;
+            let diagnostic = Diagnostic::error("E0404", span, format!("`{name}` is declared twice in this scope"));
+            self.report(diagnostic.also(before, "declared here first").help("give one of them another name"));
+        }
+        id
+    }
+
+    /// Notes that the body being checked calls a function.
+    pub fn note_call(&mut self, callee: FunctionId, span: Span) {
+        match self.inside {
+            Some(caller) => self.signatures[caller.0 as usize].calls.push((callee, span)),
+            None => self.shader_calls.push((callee, span)),
+        }
+    }
+
+    /// Last checks on the whole; gives the shader when nothing is wrong.
+    pub fn finish(mut self, shader: Option<Shader>) -> (Option<Shader>, Diagnostics) {
+        self.find_undefined_and_recursive();
+        if self.diagnostics.has_errors() {
+            return (None, self.diagnostics);
+        }
+        let shader = shader.map(|mut shader| {
+            shader.variables = std::mem::take(&mut self.variables);
+            // A prototype that nothing calls has no body; an empty one keeps the indices.
+            let empty = |sig: &Signature| {
+                let (name, returns) = (sig.name.clone(), sig.returns.clone());
+                Arc::new(Function { name, returns, params: Vec::new(), body: Vec::new() })
+            };
+            let pairs = self.bodies.iter().zip(&self.signatures);
+            shader.functions = pairs.map(|(body, sig)| body.clone().unwrap_or_else(|| empty(sig))).collect();
+            shader
+        });
+        (shader, self.diagnostics)
+    }
+
+    fn find_undefined_and_recursive(&mut self) {
+        let mut state = vec![0u8; self.signatures.len()];
+        for start in 0..self.signatures.len() {
+            self.visit(start, &mut state);
+        }
+        for (callee, span) in std::mem::take(&mut self.shader_calls) {
+            self.require_body(callee, span);
+        }
+    }
+
+    /// Depth-first walk over the calls of one function: 0 new, 1 on the way, 2 done. The depth is bounded by the
+    /// number of functions a user nests by hand, and each keeps its own place on an explicit stack.
+    fn visit(&mut self, start: usize, state: &mut [u8]) {
+        let mut stack = vec![(start, 0)];
+        while let Some((at, next)) = stack.pop() {
+            if state[at] == 2 {
+                continue;
+            }
+            state[at] = 1;
+            let Some(&(callee, span)) = self.signatures[at].calls.get(next) else {
+                state[at] = 2;
+                continue;
+            };
+            stack.push((at, next + 1));
+            self.require_body(callee, span);
+            match state[callee.0 as usize] {
+                0 => stack.push((callee.0 as usize, 0)),
+                1 => {
+                    let name = &self.signatures[callee.0 as usize].name;
+                    let message = format!("`{name}` calls itself");
+                    let diagnostic = Diagnostic::error("E0410", span, message);
+                    self.report(diagnostic.help("functions are expanded in place; write a loop instead"));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn require_body(&mut self, callee: FunctionId, span: Span) {
+        if self.bodies[callee.0 as usize].is_none() {
+            let signature = &self.signatures[callee.0 as usize];
+            let message = format!("`{}` is called but never defined", signature.name);
+            let diagnostic = Diagnostic::error("E0409", span, message).also(signature.span, "only declared here");
+            self.report(diagnostic.help("write its body in this file or in an included one"));
+        }
+    }
+}

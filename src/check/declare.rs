@@ -1,0 +1,179 @@
+//! Declarations: structs, functions, shaders and their parameters.
+
+use super::context::{Checker, Signature, Symbol};
+use super::typed::{self, FunctionId, VarId};
+use crate::lang::types::{Base, Element, Length, Struct, Type};
+use std::sync::Arc;
+use velour_grammar::ast::{ArrayLen, FunctionDecl, Metadata, Param, ShaderDecl, StructDecl, TypeName, TypeSpec};
+use velour_grammar::{Diagnostic, Span};
+
+impl Checker<'_> {
+    /// The type written, with its array brackets.
+    pub fn resolve_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
+        let base = match &spec.base {
+            _ if spec.closure => Base::Closure,
+            TypeName::Int => Base::Int,
+            TypeName::Float => Base::Float,
+            TypeName::Color => Base::Color,
+            TypeName::Point => Base::Point,
+            TypeName::Vector => Base::Vector,
+            TypeName::Normal => Base::Normal,
+            TypeName::Matrix => Base::Matrix,
+            TypeName::String => Base::String,
+            TypeName::Void => Base::Void,
+            TypeName::Struct(name) => return self.resolve_struct(name, spec.span, array),
+        };
+        Type::of(base).array(self.resolve_length(array, spec.span))
+    }
+
+    fn resolve_struct(&mut self, name: &str, span: Span, array: ArrayLen) -> Type {
+        let length = self.resolve_length(array, span);
+        if let Some(Symbol::Struct(structure)) = self.lookup(name) {
+            return Type { element: Element::Struct(structure.clone()), length };
+        }
+        let diagnostic = Diagnostic::error("E0407", span, format!("there is no type `{name}`"));
+        self.report(diagnostic.help("declare `struct` before it is used"));
+        Type::VOID
+    }
+
+    fn resolve_length(&mut self, array: ArrayLen, span: Span) -> Length {
+        match array {
+            ArrayLen::Single => Length::Single,
+            ArrayLen::Unsized => Length::Unsized,
+            ArrayLen::Sized(n) if n > 0 => Length::Fixed(n as u32),
+            ArrayLen::Sized(n) => {
+                self.error("E0507", span, format!("an array has at least one element, not {n}"));
+                Length::Fixed(1)
+            }
+        }
+    }
+
+    pub fn declare_struct(&mut self, decl: &StructDecl) {
+        let mut fields: Vec<(String, Type)> = Vec::new();
+        for field in &decl.fields {
+            let ty = self.resolve_type(&field.ty, field.array);
+            if fields.iter().any(|(name, _)| *name == field.name.name) {
+                self.error("E0404", field.name.span, format!("the struct has two fields `{}`", field.name.name));
+            }
+            if ty.length == Length::Unsized {
+                self.error("E0507", field.name.span, "an array in a struct needs a length");
+            }
+            fields.push((field.name.name.clone(), ty));
+        }
+        let structure = Arc::new(Struct { name: decl.name.name.clone(), fields });
+        let scope = self.scopes.len() - 1;
+        if let Some(Symbol::Struct(_)) = self.scopes[scope].insert(decl.name.name.clone(), Symbol::Struct(structure)) {
+            self.error("E0404", decl.name.span, format!("struct `{}` is declared twice", decl.name.name));
+        }
+    }
+
+    pub fn declare_function(&mut self, decl: &FunctionDecl) {
+        let returns = self.resolve_type(&decl.return_type, ArrayLen::Single);
+        let formals: Vec<_> = decl.params.iter().map(|p| (self.resolve_type(&p.ty, p.array), p.output)).collect();
+        let id = self.function_id(decl, &returns, &formals);
+        let Some(body) = &decl.body else { return };
+        if self.bodies[id.0 as usize].is_some() {
+            let before = self.signatures[id.0 as usize].span;
+            let diagnostic =
+                Diagnostic::error("E0404", decl.span, format!("function `{}` is defined twice", decl.name.name));
+            self.report(diagnostic.also(before, "defined here first"));
+            return;
+        }
+        let (saved_returns, saved_inside) = (self.returns.replace(returns.clone()), self.inside.replace(id));
+        let saved_loops = std::mem::take(&mut self.loops);
+        let (params, body) = self.scoped(|c| {
+            let pairs = decl.params.iter().zip(&formals);
+            let bound = pairs.map(|(p, (ty, output))| (c.bind(&p.name.name, ty.clone(), p.name.span, *output), *output));
+            let params: Vec<(VarId, bool)> = bound.collect();
+            (params, c.check_block(body))
+        });
+        self.loops = saved_loops;
+        self.returns = saved_returns;
+        self.inside = saved_inside;
+        let function = typed::Function { name: decl.name.name.clone(), returns, params, body };
+        self.bodies[id.0 as usize] = Some(Arc::new(function));
+    }
+
+    /// The id of a prototype with the same formals in this scope, or a new one.
+    fn function_id(&mut self, decl: &FunctionDecl, returns: &Type, formals: &[(Type, bool)]) -> FunctionId {
+        let name = &decl.name.name;
+        let scope = self.scopes.len() - 1;
+        let known = match self.scopes[scope].get(name) {
+            Some(Symbol::Functions(ids)) => ids.clone(),
+            Some(_) => {
+                self.error("E0404", decl.name.span, format!("`{name}` is already the name of something else"));
+                Vec::new()
+            }
+            None => Vec::new(),
+        };
+        let same = |id: &&FunctionId| {
+            let signature = &self.signatures[id.0 as usize];
+            signature.formals == formals && signature.returns == *returns
+        };
+        if let Some(&id) = known.iter().find(same) {
+            return id;
+        }
+        let id = FunctionId(self.signatures.len() as u32);
+        self.signatures.push(Signature {
+            name: name.clone(),
+            returns: returns.clone(),
+            formals: formals.to_vec(),
+            span: decl.span,
+            calls: Vec::new(),
+        });
+        self.bodies.push(None);
+        let ids = known.into_iter().chain([id]).collect();
+        self.scopes[scope].insert(name.clone(), Symbol::Functions(ids));
+        id
+    }
+
+    pub fn declare_shader(&mut self, decl: &ShaderDecl) -> typed::Shader {
+        self.scoped(|c| {
+            let metadata = c.check_metadata(&decl.metadata);
+            let params = decl.params.iter().map(|param| c.declare_param(param)).collect();
+            let body = c.check_block(&decl.body);
+            typed::Shader {
+                kind: decl.kind,
+                name: decl.name.name.clone(),
+                span: decl.span,
+                metadata,
+                params,
+                variables: Vec::new(),
+                functions: Vec::new(),
+                body,
+            }
+        })
+    }
+
+    fn declare_param(&mut self, param: &Param) -> typed::ShaderParam {
+        let mut ty = self.resolve_type(&param.ty, param.array);
+        let name = &param.name;
+        if ty.length == Length::Unsized && param.output {
+            self.error("E0507", name.span, "an output array needs a length");
+        }
+        let default = match &param.default {
+            Some(value) => {
+                let value = self.check_initial(value, &mut ty);
+                Some(value)
+            }
+            None => {
+                let diagnostic = Diagnostic::error("E0408", name.span, format!("parameter `{}` has no default", name.name));
+                self.report(diagnostic.help(format!("write `{} = …`", name.name)));
+                None
+            }
+        };
+        let metadata = self.check_metadata(&param.metadata);
+        let var = self.bind(&name.name, ty, name.span, param.output);
+        typed::ShaderParam { var, output: param.output, default, metadata }
+    }
+
+    fn check_metadata(&mut self, list: &[Metadata]) -> Vec<typed::Metadata> {
+        let mut out = Vec::new();
+        for entry in list {
+            let mut ty = self.resolve_type(&entry.ty, entry.array);
+            let value = self.check_initial(&entry.value, &mut ty);
+            out.push(typed::Metadata { ty, name: entry.name.name.clone(), value });
+        }
+        out
+    }
+}

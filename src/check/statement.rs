@@ -1,0 +1,126 @@
+//! Statements.
+
+use super::context::Checker;
+use super::typed::{Expr, Stmt};
+use crate::lang::types::{Base, Length, Type};
+use velour_grammar::ast::{self, StmtKind, VarDecl};
+use velour_grammar::{Diagnostic, Span};
+
+impl Checker<'_> {
+    /// Statements of one block; the caller opens the scope.
+    pub fn check_block(&mut self, stmts: &[ast::Stmt]) -> Vec<Stmt> {
+        let mut out = Vec::new();
+        for stmt in stmts {
+            self.check_stmt(stmt, &mut out);
+        }
+        out
+    }
+
+    fn check_body(&mut self, stmt: &ast::Stmt) -> Vec<Stmt> {
+        self.scoped(|c| {
+            let mut out = Vec::new();
+            stacker::maybe_grow(64 << 10, 1 << 20, || c.check_stmt(stmt, &mut out));
+            out
+        })
+    }
+
+    fn check_stmt(&mut self, stmt: &ast::Stmt, out: &mut Vec<Stmt>) {
+        match &stmt.kind {
+            StmtKind::Empty | StmtKind::Error => {}
+            StmtKind::Expr(expr) => {
+                let expr = self.check_expr(expr, None);
+                out.push(Stmt::Expr(expr));
+            }
+            StmtKind::Declare(decls) => decls.iter().for_each(|decl| self.check_declaration(decl, out)),
+            StmtKind::Function(decl) => self.declare_function(decl),
+            StmtKind::Block(stmts) => {
+                let body = self.scoped(|c| c.check_block(stmts));
+                out.push(Stmt::Block(body));
+            }
+            StmtKind::If { condition, then, otherwise } => {
+                let condition = self.check_condition(condition);
+                let then = self.check_body(then);
+                let otherwise = otherwise.as_ref().map(|stmt| self.check_body(stmt)).unwrap_or_default();
+                out.push(Stmt::If(condition, then, otherwise));
+            }
+            StmtKind::While { condition, body } => {
+                let condition = Some(self.check_condition(condition));
+                let body = self.check_loop_body(body);
+                out.push(Stmt::Loop { init: Vec::new(), condition, step: None, body, test_last: false });
+            }
+            StmtKind::DoWhile { body, condition } => {
+                let body = self.check_loop_body(body);
+                let condition = Some(self.check_condition(condition));
+                out.push(Stmt::Loop { init: Vec::new(), condition, step: None, body, test_last: true });
+            }
+            StmtKind::For { init, condition, step, body } => self.scoped(|c| {
+                let mut first = Vec::new();
+                c.check_stmt(init, &mut first);
+                let condition = condition.as_ref().map(|condition| c.check_condition(condition));
+                let step = step.as_ref().map(|step| c.check_expr(step, None));
+                let body = c.check_loop_body(body);
+                out.push(Stmt::Loop { init: first, condition, step, body, test_last: false });
+            }),
+            StmtKind::Break => self.check_jump(stmt.span, "break", Stmt::Break, out),
+            StmtKind::Continue => self.check_jump(stmt.span, "continue", Stmt::Continue, out),
+            StmtKind::Return(value) => self.check_return(stmt.span, value.as_ref(), out),
+        }
+    }
+
+    fn check_loop_body(&mut self, body: &ast::Stmt) -> Vec<Stmt> {
+        self.loops += 1;
+        let body = self.check_body(body);
+        self.loops -= 1;
+        body
+    }
+
+    fn check_jump(&mut self, span: Span, word: &str, stmt: Stmt, out: &mut Vec<Stmt>) {
+        if self.loops == 0 {
+            self.error("E0509", span, format!("`{word}` stands outside a loop"));
+        }
+        out.push(stmt);
+    }
+
+    fn check_return(&mut self, span: Span, value: Option<&ast::Expr>, out: &mut Vec<Stmt>) {
+        let expected = self.returns.clone();
+        let value = match (value, expected) {
+            (None, None) => None,
+            (None, Some(ty)) if ty == Type::VOID => None,
+            (None, Some(ty)) => {
+                let diagnostic = Diagnostic::error("E0508", span, format!("this function returns a {ty}"));
+                self.report(diagnostic.help("write `return value;`"));
+                None
+            }
+            (Some(value), Some(mut ty)) if ty != Type::VOID => Some(self.check_initial(value, &mut ty)),
+            (Some(value), _) => {
+                self.check_expr(value, None);
+                let diagnostic = Diagnostic::error("E0508", span, "nothing can be returned from here");
+                self.report(diagnostic.help("write `return;`, or give the function a return type"));
+                None
+            }
+        };
+        out.push(Stmt::Return(value));
+    }
+
+    fn check_declaration(&mut self, decl: &VarDecl, out: &mut Vec<Stmt>) {
+        let mut ty = self.resolve_type(&decl.ty, decl.array);
+        if ty.base() == Some(Base::Void) && !matches!(decl.ty.base, ast::TypeName::Struct(_)) {
+            self.error("E0507", decl.ty.span, format!("`{}` cannot be of type void", decl.name.name));
+        }
+        let init = decl.init.as_ref().map(|init| self.check_initial(init, &mut ty));
+        if ty.length == Length::Unsized {
+            let diagnostic =
+                Diagnostic::error("E0507", decl.name.span, format!("the array `{}` needs a length", decl.name.name));
+            self.report(diagnostic.help("write the length in the brackets, or give an initialiser list"));
+            ty.length = Length::Fixed(1);
+        }
+        let var = self.bind(&decl.name.name, ty, decl.name.span, true);
+        out.push(Stmt::Declare(var, init));
+    }
+
+    /// A condition: any base type, turned into an int that is not zero when true.
+    pub fn check_condition(&mut self, expr: &ast::Expr) -> Expr {
+        let expr = self.check_expr(expr, None);
+        self.truth(expr)
+    }
+}
