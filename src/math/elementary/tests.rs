@@ -56,9 +56,9 @@ fn exponentials_stay_within_their_bounds() {
         ("exp2", exp2, f64::exp2),
         ("expm1", expm1, f64::exp_m1),
     ] {
-        sweep(name, 1.1, binades(), f, wide);
-        sweep(name, 1.1, even(-160.0, 130.0, 200_003), f, wide);
-        sweep(name, 1.1, even(-1.0, 1.0, 100_003), f, wide);
+        sweep(name, 1.2, binades(), f, wide);
+        sweep(name, 1.2, even(-160.0, 130.0, 200_003), f, wide);
+        sweep(name, 1.2, even(-1.0, 1.0, 100_003), f, wide);
     }
 }
 
