@@ -1,3 +1,4 @@
 //! Numbers without a language: columns, elementary functions, frames, warps, noise.
 
 pub mod columns;
+pub mod elementary;
