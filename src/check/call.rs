@@ -63,8 +63,8 @@ impl Checker<'_> {
     fn unknown_function(&mut self, name: &Ident) {
         let diagnostic = Diagnostic::error("E0405", name.span, format!("there is no function `{}`", name.name));
         let mut known: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().map(String::as_str)).collect();
-        known.extend(builtins::names());
-        known.extend(self.closures.specs.iter().map(|spec| spec.name));
+        builtins::names().for_each(|name| known.push(name));
+        self.closures.specs.iter().for_each(|spec| known.push(spec.name));
         let help = nearest(&name.name, known.into_iter()).map(|near| format!("did you mean `{near}`?"));
         self.report(diagnostic.help(help.unwrap_or_else(|| "`velour info` lists functions and closures".to_owned())));
     }

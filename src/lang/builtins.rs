@@ -81,7 +81,7 @@ int trace(point, vector, [token,value]*)
 /// Builtins that the language has and velour does not run; a call is an error that names the function.
 pub const NOT_YET: &[&str] = &[
     "bump", "displace", "dict_find", "dict_next", "dict_value", "environment", "gettextureinfo", "getmessage",
-    "pointcloud_get", "pointcloud_search", "pointcloud_write", "setmessage", "texture", "texture3d", "trace",
+    "pointcloud_get", "pointcloud_search", "pointcloud_write", "random", "setmessage", "texture", "texture3d", "trace",
 ];
 
 /// What a formal parameter of a builtin accepts.

@@ -1,0 +1,262 @@
+//! The builder of programs: appends instructions, folds constants as it goes, and gives equal values one register.
+
+use super::fold;
+use super::op::*;
+use super::program::*;
+use std::collections::HashMap;
+
+/// What makes two instructions compute the same value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Key {
+    Unary(Unary, Reg),
+    Binary(Binary, Reg, Reg),
+    Compare(Compare, Reg, Reg),
+    IntUnary(IntUnary, Reg),
+    IntBinary(IntBinary, Reg, Reg),
+    IntToFloat(Reg),
+    FloatToInt(Reg),
+    Select(Reg, Reg, Reg),
+    Derivative(Reg, bool),
+}
+
+/// Builds a program.
+pub struct Builder {
+    /// The program so far; its body is the outermost open block until [`Builder::finish`].
+    pub program: Program,
+    blocks: Vec<Block>,
+    values: Vec<HashMap<Key, Reg>>,
+    constants: HashMap<(Kind, u32), Reg>,
+    inputs: HashMap<Input, Reg>,
+    simplify: bool,
+}
+
+impl Builder {
+    /// A builder. Without `simplify` every instruction is kept as it is asked for.
+    pub fn new(simplify: bool) -> Self {
+        Builder {
+            program: Program::default(),
+            blocks: vec![Block::new()],
+            values: vec![HashMap::new()],
+            constants: HashMap::new(),
+            inputs: HashMap::new(),
+            simplify,
+        }
+    }
+
+    /// The program, with the code appended so far.
+    pub fn finish(mut self) -> Program {
+        self.program.body = self.blocks.pop().unwrap_or_default();
+        self.program
+    }
+
+    /// Appends to the innermost open block.
+    pub fn push(&mut self, node: Node) {
+        if let Some(block) = self.blocks.last_mut() {
+            block.push(node);
+        }
+    }
+
+    /// Appends an instruction.
+    pub fn instr(&mut self, instr: Instr) {
+        self.push(Node::Instr(instr));
+    }
+
+    /// Opens a block; what follows goes into it.
+    pub fn open(&mut self) {
+        self.blocks.push(Block::new());
+        self.values.push(HashMap::new());
+    }
+
+    /// Closes the innermost block and gives it.
+    pub fn close(&mut self) -> Block {
+        self.values.pop();
+        self.blocks.pop().unwrap_or_default()
+    }
+
+    /// A new scope that lanes can leave.
+    pub fn scope(&mut self) -> ScopeId {
+        self.program.scopes += 1;
+        ScopeId(self.program.scopes - 1)
+    }
+
+    /// A new array.
+    pub fn array(&mut self, kind: Kind, len: u32, components: u32) -> ArrayId {
+        self.program.arrays.push(ArrayInfo { kind, len, components, uniform: false });
+        ArrayId(self.program.arrays.len() as u32 - 1)
+    }
+
+    /// The register of a constant.
+    pub fn constant(&mut self, value: Const) -> Reg {
+        let (kind, bits) = match value {
+            Const::Float(x) => (Kind::Float, x.to_bits()),
+            Const::Int(i) => (Kind::Int, i as u32),
+            Const::String(s) => (Kind::String, s as u32),
+            Const::NoClosure => (Kind::Closure, 0),
+        };
+        let regs = &mut self.program.regs;
+        *self.constants.entry((kind, bits)).or_insert_with(|| {
+            regs.push(RegInfo { kind, source: Source::Const(value), mutable: false, uniform: true });
+            Reg(regs.len() as u32 - 1)
+        })
+    }
+
+    /// The register of a float constant.
+    pub fn float(&mut self, value: f32) -> Reg {
+        self.constant(Const::Float(value))
+    }
+
+    /// The register of an int constant.
+    pub fn int(&mut self, value: i32) -> Reg {
+        self.constant(Const::Int(value))
+    }
+
+    /// The register of an input.
+    pub fn input(&mut self, input: Input) -> Reg {
+        let kind = if input == Input::Backfacing { Kind::Int } else { Kind::Float };
+        let regs = &mut self.program.regs;
+        *self.inputs.entry(input).or_insert_with(|| {
+            regs.push(RegInfo { kind, source: Source::Input(input), mutable: false, uniform: false });
+            Reg(regs.len() as u32 - 1)
+        })
+    }
+
+    /// The float a register is known to hold.
+    pub fn known_float(&self, reg: Reg) -> Option<f32> {
+        match self.program.constant(reg) {
+            Some(Const::Float(value)) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// The int (or symbol) a register is known to hold.
+    pub fn known_int(&self, reg: Reg) -> Option<i32> {
+        match self.program.constant(reg) {
+            Some(Const::Int(value) | Const::String(value)) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// The register of an equal value computed before, or a new one for `make` to write.
+    fn value(&mut self, key: Key, kind: Kind, reads: &[Reg], make: impl FnOnce(Reg) -> Instr) -> Reg {
+        // A mutable register may hold something else by now, so nothing is remembered of it.
+        let stable = self.simplify && reads.iter().all(|r| !self.program.regs[r.0 as usize].mutable);
+        if stable {
+            if let Some(&known) = self.values.iter().rev().find_map(|scope| scope.get(&key)) {
+                return known;
+            }
+        }
+        let dst = self.program.reg(kind, false);
+        self.instr(make(dst));
+        if stable {
+            if let Some(scope) = self.values.last_mut() {
+                scope.insert(key, dst);
+            }
+        }
+        dst
+    }
+
+    /// `op a`
+    pub fn unary(&mut self, op: Unary, a: Reg) -> Reg {
+        match self.known_float(a) {
+            Some(x) if self.simplify => self.float(fold::unary(op, x)),
+            _ => self.value(Key::Unary(op, a), Kind::Float, &[a], |dst| Instr::Unary(op, dst, a)),
+        }
+    }
+
+    /// `a op b`
+    pub fn binary(&mut self, op: Binary, a: Reg, b: Reg) -> Reg {
+        if self.simplify {
+            match (op, self.known_float(a), self.known_float(b)) {
+                (_, Some(x), Some(y)) => return self.float(fold::binary(op, x, y)),
+                // Exact for every value, not-a-number and minus zero included.
+                (Binary::Mul | Binary::Div, _, Some(1.0)) => return a,
+                (Binary::Mul, Some(1.0), _) => return b,
+                (Binary::Sub, _, Some(y)) if y.to_bits() == 0 => return a,
+                _ => {}
+            }
+        }
+        self.value(Key::Binary(op, a, b), Kind::Float, &[a, b], |dst| Instr::Binary(op, dst, a, b))
+    }
+
+    /// `a op b` of floats, an int
+    pub fn compare(&mut self, op: Compare, a: Reg, b: Reg) -> Reg {
+        match (self.known_float(a), self.known_float(b)) {
+            (Some(x), Some(y)) if self.simplify => self.int(fold::compare(op, x, y)),
+            _ => self.value(Key::Compare(op, a, b), Kind::Int, &[a, b], |dst| Instr::Compare(op, dst, a, b)),
+        }
+    }
+
+    /// Is `a` not a number, infinite, finite?
+    pub fn test(&mut self, test: Test, a: Reg) -> Reg {
+        let dst = self.program.reg(Kind::Int, false);
+        self.instr(Instr::Test(test, dst, a));
+        dst
+    }
+
+    /// `op a` of an int
+    pub fn int_unary(&mut self, op: IntUnary, a: Reg) -> Reg {
+        match self.known_int(a) {
+            Some(x) if self.simplify => self.int(fold::int_unary(op, x)),
+            _ => self.value(Key::IntUnary(op, a), Kind::Int, &[a], |dst| Instr::IntUnary(op, dst, a)),
+        }
+    }
+
+    /// `a op b` of ints
+    pub fn int_binary(&mut self, op: IntBinary, a: Reg, b: Reg) -> Reg {
+        match (self.known_int(a), self.known_int(b)) {
+            (Some(x), Some(y)) if self.simplify => self.int(fold::int_binary(op, x, y)),
+            _ => self.value(Key::IntBinary(op, a, b), Kind::Int, &[a, b], |dst| Instr::IntBinary(op, dst, a, b)),
+        }
+    }
+
+    /// An int as a float
+    pub fn int_to_float(&mut self, a: Reg) -> Reg {
+        match self.known_int(a) {
+            Some(x) if self.simplify => self.float(x as f32),
+            _ => self.value(Key::IntToFloat(a), Kind::Float, &[a], |dst| Instr::IntToFloat(dst, a)),
+        }
+    }
+
+    /// A float cut to an int
+    pub fn float_to_int(&mut self, a: Reg) -> Reg {
+        match self.known_float(a) {
+            Some(x) if self.simplify => self.int(fold::float_to_int(x)),
+            _ => self.value(Key::FloatToInt(a), Kind::Int, &[a], |dst| Instr::FloatToInt(dst, a)),
+        }
+    }
+
+    /// `c ? a : b` of any kind, both sides computed
+    pub fn select(&mut self, c: Reg, a: Reg, b: Reg) -> Reg {
+        match self.known_int(c) {
+            Some(c) if self.simplify => return if c != 0 { a } else { b },
+            _ if a == b && self.simplify => return a,
+            _ => {}
+        }
+        let kind = self.program.kind(a);
+        if kind == Kind::Closure {
+            let dst = self.program.reg(kind, false);
+            self.instr(Instr::ClosureSelect(dst, c, a, b));
+            return dst;
+        }
+        self.value(Key::Select(c, a, b), kind, &[c, a, b], |dst| Instr::Select(dst, c, a, b))
+    }
+
+    /// Derivative along x or y
+    pub fn derivative(&mut self, a: Reg, along_y: bool) -> Reg {
+        self.value(Key::Derivative(a, along_y), Kind::Float, &[a], |dst| Instr::Derivative(dst, a, along_y))
+    }
+
+    /// A copy in a register of its own.
+    pub fn copy(&mut self, src: Reg, mutable: bool) -> Reg {
+        let dst = self.program.reg(self.program.kind(src), mutable);
+        self.instr(Instr::Move { dst, src, masked: true });
+        dst
+    }
+
+    /// A routine with so many results of the kinds given.
+    pub fn call(&mut self, routine: Routine, kinds: &[Kind], src: Vec<Reg>, span: velour_grammar::Span) -> Vec<Reg> {
+        let dst: Vec<Reg> = kinds.iter().map(|&kind| self.program.reg(kind, false)).collect();
+        self.instr(Instr::Call { routine, dst: dst.clone(), src, span });
+        dst
+    }
+}

@@ -1,0 +1,392 @@
+//! Builtin functions, each written out as operations on single numbers or as one routine.
+
+use super::Lower;
+use super::value::Value;
+use crate::check::typed::{Argument, Expr};
+use crate::ir::op::*;
+use crate::ir::program::*;
+use crate::lang::types::{Base, Type};
+
+impl Lower<'_> {
+    /// A call of a builtin.
+    pub(super) fn builtin(&mut self, name: &'static str, args: &[Argument], call: &Expr) -> Value {
+        match name {
+            "printf" | "fprintf" | "error" | "warning" | "format" => return self.text_call(name, args, call.span),
+            "sincos" | "getmatrix" | "getattribute" | "regex_search" | "regex_match" | "split" => {
+                return self.writing_call(name, args, call);
+            }
+            "arraylength" => {
+                let len = args[0].ty().count() as i32;
+                return Value::Regs(vec![self.b.int(len)]);
+            }
+            "isconnected" | "isconstant" => return self.known_about(name, &args[0]),
+            "exit" => {
+                if let Some(scope) = self.exit {
+                    self.b.push(Node::Leave(scope));
+                }
+                return Value::Regs(Vec::new());
+            }
+            "spline" | "splineinverse" => return self.spline(name, args),
+            _ => {}
+        }
+        if let Some(noise) = self.noise_call(name, args, call) {
+            return noise;
+        }
+        let values = self.arguments(args);
+        let regs: Vec<&[Reg]> = values.iter().map(Vec::as_slice).collect();
+        self.at(call.span);
+        Value::Regs(self.plain(name, &regs, args, call))
+    }
+
+    /// The registers of read-only arguments, kept from changes that later arguments make.
+    pub(super) fn arguments(&mut self, args: &[Argument]) -> Vec<Vec<Reg>> {
+        let mut out: Vec<Vec<Reg>> = Vec::new();
+        for arg in args {
+            if let Argument::In(expr) = arg {
+                if self.assigned.of_expr(self.shader, expr).seen() {
+                    out = out.into_iter().map(|regs| regs.into_iter().map(|r| self.fixed(r)).collect()).collect();
+                }
+                out.push(self.expr_regs(expr));
+            }
+        }
+        out
+    }
+
+    /// Functions whose arguments are only read.
+    fn plain(&mut self, name: &str, a: &[&[Reg]], args: &[Argument], call: &Expr) -> Vec<Reg> {
+        let int = call.ty.base() == Some(Base::Int);
+        if let Some(op) = unary_named(name).filter(|_| !int && a.len() == 1) {
+            return a[0].iter().map(|&reg| self.b.unary(op, reg)).collect();
+        }
+        if let Some(op) = binary_named(name).filter(|_| !int) {
+            return self.each(a[0], a[1], |l, x, y| l.b.binary(op, x, y));
+        }
+        match name {
+            "abs" | "fabs" => vec![self.b.int_unary(IntUnary::Abs, a[0][0])],
+            "min" => vec![self.b.int_binary(IntBinary::Min, a[0][0], a[1][0])],
+            "max" => vec![self.b.int_binary(IntBinary::Max, a[0][0], a[1][0])],
+            "mix" => self.mix(a[0], a[1], a[2]),
+            "select" => self.select_call(a, args),
+            "smoothstep" => vec![self.smoothstep(a[0][0], a[1][0], a[2][0])],
+            "isnan" => vec![self.b.test(Test::Nan, a[0][0])],
+            "isinf" => vec![self.b.test(Test::Inf, a[0][0])],
+            "isfinite" => vec![self.b.test(Test::Finite, a[0][0])],
+            "cross" => self.cross(a[0], a[1]),
+            "dot" => vec![self.dot(a[0], a[1])],
+            "length" => vec![self.length(a[0])],
+            "distance" => {
+                let between = self.each(a[0], a[1], |l, x, y| l.b.binary(Binary::Sub, x, y));
+                vec![self.length(&between)]
+            }
+            "normalize" => self.normalize(a[0]),
+            "luminance" => {
+                let weights = [0.2126, 0.7152, 0.0722].map(|w| self.b.float(w));
+                vec![self.dot(a[0], &weights)]
+            }
+            "transform" => self.transform_call(a, args),
+            "determinant" => self.routine(Routine::Determinant, a, &[Kind::Float]),
+            "transpose" => (0..16).map(|i| a[0][4 * (i % 4) + i / 4]).collect(),
+            "Dx" => a[0].iter().map(|&reg| self.b.derivative(reg, false)).collect(),
+            "Dy" => a[0].iter().map(|&reg| self.b.derivative(reg, true)).collect(),
+            // There is no third direction on a surface.
+            "Dz" => vec![self.b.float(0.0); a[0].len()],
+            "filterwidth" => a[0].iter().map(|&reg| self.filterwidth(reg)).collect(),
+            "area" => vec![self.area(a[0])],
+            "calculatenormal" => self.calculate_normal(a[0]),
+            "surfacearea" => vec![self.b.input(Input::SurfaceArea)],
+            "backfacing" => vec![self.b.input(Input::Backfacing)],
+            _ => self.routine_call(name, a, args, call),
+        }
+    }
+
+    /// Functions that are one routine.
+    fn routine_call(&mut self, name: &str, a: &[&[Reg]], args: &[Argument], call: &Expr) -> Vec<Reg> {
+        let first_base = args.first().and_then(|arg| arg.ty().base());
+        let routine = match name {
+            "blackbody" => Routine::Blackbody,
+            "wavelength_color" => Routine::WavelengthColor,
+            "transformc" => Routine::TransformColor,
+            "transformu" if a.len() == 2 => {
+                let common = self.symbol("common");
+                return self.routine(Routine::TransformUnit, &[&[common], a[0], a[1]], &[Kind::Float]);
+            }
+            "transformu" => Routine::TransformUnit,
+            "hash" if first_base == Some(Base::Int) => Routine::HashInt,
+            "hash" if first_base == Some(Base::String) => Routine::HashString,
+            "hash" => Routine::HashFloats,
+            "strlen" => Routine::Strlen,
+            "getchar" => Routine::GetChar,
+            "startswith" => Routine::StartsWith,
+            "endswith" => Routine::EndsWith,
+            "substr" => Routine::Substr,
+            "concat" => Routine::Concat,
+            "stof" => Routine::Stof,
+            "stoi" => Routine::Stoi,
+            // What is left is `raytype`: the checker lets no unknown name pass.
+            _ => Routine::RayType,
+        };
+        let base = call.ty.base().unwrap_or(Base::Int);
+        self.routine(routine, a, &vec![super::value::kind_of(base); base.components()])
+    }
+
+    fn routine(&mut self, routine: Routine, a: &[&[Reg]], kinds: &[Kind]) -> Vec<Reg> {
+        self.b.call(routine, kinds, a.concat(), self.span)
+    }
+
+    pub(super) fn symbol(&mut self, text: &str) -> Reg {
+        self.b.constant(Const::String(crate::lang::symbols::Symbol::new(text).0))
+    }
+
+    fn mix(&mut self, x: &[Reg], y: &[Reg], a: &[Reg]) -> Vec<Reg> {
+        let one = self.b.float(1.0);
+        let rest: Vec<Reg> = a.iter().map(|&a| self.b.binary(Binary::Sub, one, a)).collect();
+        let left = self.each(x, &rest, |l, x, r| l.b.binary(Binary::Mul, x, r));
+        let right = self.each(y, a, |l, y, a| l.b.binary(Binary::Mul, y, a));
+        self.each(&left, &right, |l, x, y| l.b.binary(Binary::Add, x, y))
+    }
+
+    /// `select(x, y, cond)`: y where cond is not zero.
+    fn select_call(&mut self, a: &[&[Reg]], args: &[Argument]) -> Vec<Reg> {
+        let int = args[2].ty().base() == Some(Base::Int);
+        let zero = self.b.float(0.0);
+        let test = |l: &mut Self, &c: &Reg| if int { c } else { l.b.compare(Compare::Ne, c, zero) };
+        let conditions: Vec<Reg> = a[2].iter().map(|c| test(self, c)).collect();
+        let pick = |i: usize| conditions[if conditions.len() == 1 { 0 } else { i }];
+        (0..a[0].len()).map(|i| self.b.select(pick(i), a[1][i], a[0][i])).collect()
+    }
+
+    /// 0 below the first edge, 1 from the second on, `3t² - 2t³` between.
+    fn smoothstep(&mut self, edge0: Reg, edge1: Reg, x: Reg) -> Reg {
+        let (zero, one) = (self.b.float(0.0), self.b.float(1.0));
+        let (two, three) = (self.b.float(2.0), self.b.float(3.0));
+        let run = self.b.binary(Binary::Sub, x, edge0);
+        let width = self.b.binary(Binary::Sub, edge1, edge0);
+        let t = self.b.binary(Binary::Div, run, width);
+        let twice = self.b.binary(Binary::Mul, two, t);
+        let factor = self.b.binary(Binary::Sub, three, twice);
+        let square = self.b.binary(Binary::Mul, t, t);
+        let inside = self.b.binary(Binary::Mul, factor, square);
+        let above = self.b.compare(Compare::Ge, x, edge1);
+        let upper = self.b.select(above, one, inside);
+        let below = self.b.compare(Compare::Lt, x, edge0);
+        self.b.select(below, zero, upper)
+    }
+
+    pub(super) fn cross(&mut self, a: &[Reg], b: &[Reg]) -> Vec<Reg> {
+        let component = |l: &mut Self, i: usize, j: usize| {
+            let x = l.b.binary(Binary::Mul, a[i], b[j]);
+            let y = l.b.binary(Binary::Mul, a[j], b[i]);
+            l.b.binary(Binary::Sub, x, y)
+        };
+        vec![component(self, 1, 2), component(self, 2, 0), component(self, 0, 1)]
+    }
+
+    pub(super) fn length(&mut self, v: &[Reg]) -> Reg {
+        let square = self.dot(v, v);
+        self.b.unary(Unary::Sqrt, square)
+    }
+
+    fn normalize(&mut self, v: &[Reg]) -> Vec<Reg> {
+        let length = self.length(v);
+        v.iter().map(|&c| self.b.binary(Binary::Div, c, length)).collect()
+    }
+
+    fn filterwidth(&mut self, reg: Reg) -> Reg {
+        let (x, y) = (self.b.derivative(reg, false), self.b.derivative(reg, true));
+        self.length(&[x, y])
+    }
+
+    fn area(&mut self, p: &[Reg]) -> Reg {
+        let normal = self.calculate_normal(p);
+        self.length(&normal)
+    }
+
+    fn calculate_normal(&mut self, p: &[Reg]) -> Vec<Reg> {
+        let dx: Vec<Reg> = p.iter().map(|&reg| self.b.derivative(reg, false)).collect();
+        let dy: Vec<Reg> = p.iter().map(|&reg| self.b.derivative(reg, true)).collect();
+        self.cross(&dx, &dy)
+    }
+
+    /// Is a parameter connected; is a value known before the shader runs?
+    fn known_about(&mut self, name: &str, arg: &Argument) -> Value {
+        let known = match arg {
+            Argument::In(expr) if name == "isconnected" => match &expr.kind {
+                crate::check::typed::ExprKind::Var(var) => self.connected.contains(var),
+                _ => false,
+            },
+            Argument::In(expr) => {
+                let regs = self.expr_regs(expr);
+                !regs.is_empty() && regs.iter().all(|&reg| self.b.program.constant(reg).is_some())
+            }
+            Argument::Out(_) => false,
+        };
+        Value::Regs(vec![self.b.int(known as i32)])
+    }
+
+    fn spline(&mut self, name: &str, args: &[Argument]) -> Value {
+        let exprs: Vec<&Expr> = args.iter().filter_map(|a| if let Argument::In(e) = a { Some(e) } else { None }).collect();
+        let (basis, x) = (self.reg(exprs[0]), self.reg(exprs[1]));
+        let array = self.expr(exprs[exprs.len() - 1]);
+        let mut knots = self.elements(&array);
+        if exprs.len() == 4 {
+            let count = self.reg(exprs[2]);
+            let count = self.b.known_int(count).unwrap_or(knots.len() as i32);
+            knots.truncate(count.max(0) as usize);
+        }
+        let knots: Vec<Vec<Reg>> = knots.iter().map(|knot| self.regs(knot)).collect();
+        let components = knots.first().map_or(1, Vec::len);
+        let mut out = Vec::new();
+        for c in 0..components {
+            let src: Vec<Reg> = [basis, x].into_iter().chain(knots.iter().map(|knot| knot[c])).collect();
+            let (routine, kinds): (_, &[Kind]) = match name {
+                "spline" => (Routine::Spline, &[Kind::Float, Kind::Float]),
+                _ => (Routine::SplineInverse, &[Kind::Float]),
+            };
+            out.push(self.b.call(routine, kinds, src, self.span)[0]);
+        }
+        Value::Regs(out)
+    }
+
+    /// Functions that write some of their arguments.
+    fn writing_call(&mut self, name: &str, args: &[Argument], call: &Expr) -> Value {
+        if name == "sincos" {
+            let x = self.arguments(args).swap_remove(0);
+            let sin = x.iter().map(|&reg| self.b.unary(Unary::Sin, reg)).collect();
+            let cos = x.iter().map(|&reg| self.b.unary(Unary::Cos, reg)).collect();
+            self.write_out(&args[1], &Value::Regs(sin));
+            self.write_out(&args[2], &Value::Regs(cos));
+            return Value::Regs(Vec::new());
+        }
+        let inputs: Vec<Reg> = self.arguments(args).concat();
+        self.at(call.span);
+        let found = match name {
+            "getmatrix" => {
+                let (matrix, found) = self.space_matrix(inputs[0], inputs[1]);
+                self.write_out(&args[2], &Value::Regs(matrix));
+                found
+            }
+            "getattribute" => self.attribute(args, inputs),
+            "split" => self.split(args, inputs),
+            _ => self.regex(name == "regex_match", args, inputs),
+        };
+        Value::Regs(vec![found])
+    }
+
+    pub(super) fn write_out(&mut self, arg: &Argument, value: &Value) {
+        if let Argument::Out(place) = arg {
+            let target = self.target(place);
+            self.write(&target, value);
+        }
+    }
+
+    fn attribute(&mut self, args: &[Argument], mut inputs: Vec<Reg>) -> Reg {
+        let Some(out @ Argument::Out(place)) = args.last() else { return self.b.int(0) };
+        let leading = args.iter().filter(|arg| arg.ty() == &Type::STRING && matches!(arg, Argument::In(_))).count();
+        if leading == 1 {
+            let object = self.symbol("");
+            inputs.insert(0, object);
+        }
+        let target = self.target(place);
+        let old = self.load(&target);
+        let items = if place.ty.is_array() { self.elements(&old) } else { vec![old.clone()] };
+        let old: Vec<Reg> = items.iter().flat_map(|item| self.regs(item)).collect();
+        let kind = old.first().map_or(Kind::Int, |&reg| self.b.program.kind(reg));
+        let count = old.len() as u32;
+        let ty = match kind {
+            Kind::Float => AttributeType::Floats(count),
+            Kind::String => AttributeType::Strings(count),
+            _ => AttributeType::Ints(count),
+        };
+        let kinds: Vec<Kind> = [Kind::Int].into_iter().chain(old.iter().map(|_| kind)).collect();
+        let results = self.b.call(Routine::Attribute(ty), &kinds, inputs, self.span);
+        let new: Vec<Reg> = results[1..].iter().zip(&old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
+        self.write_flat(out, &new);
+        results[0]
+    }
+
+    /// Writes registers to an output argument, element by element.
+    fn write_flat(&mut self, arg: &Argument, regs: &[Reg]) {
+        let Argument::Out(place) = arg else { return };
+        if !place.ty.is_array() {
+            return self.write_out(arg, &Value::Regs(regs.to_vec()));
+        }
+        let target = self.target(place);
+        let array = self.load(&target);
+        let elements = self.elements(&array);
+        let width = regs.len() / elements.len().max(1);
+        for (element, part) in elements.iter().zip(regs.chunks(width.max(1))) {
+            self.store(element, &Value::Regs(part.to_vec()));
+        }
+    }
+
+    fn regex(&mut self, whole: bool, args: &[Argument], inputs: Vec<Reg>) -> Reg {
+        let positions = args.iter().find(|arg| matches!(arg, Argument::Out(_)));
+        let count = positions.map_or(0, |arg| arg.ty().count());
+        let results = self.b.call(Routine::Regex(whole), &vec![Kind::Int; 1 + count], inputs, self.span);
+        if let Some(arg) = positions {
+            self.write_flat(arg, &results[1..]);
+        }
+        results[0]
+    }
+
+    fn split(&mut self, args: &[Argument], mut inputs: Vec<Reg>) -> Reg {
+        let count = args[1].ty().count();
+        if inputs.len() < 2 {
+            let spaces = self.symbol("");
+            inputs.push(spaces);
+        }
+        if inputs.len() < 3 {
+            let most = self.b.int(count as i32);
+            inputs.push(most);
+        }
+        let kinds: Vec<Kind> = [Kind::Int].into_iter().chain(vec![Kind::String; count]).collect();
+        let results = self.b.call(Routine::Split, &kinds, inputs, self.span);
+        self.write_flat(&args[1], &results[1..]);
+        results[0]
+    }
+}
+
+fn unary_named(name: &str) -> Option<Unary> {
+    Some(match name {
+        "sqrt" => Unary::Sqrt,
+        "inversesqrt" => Unary::InverseSqrt,
+        "cbrt" => Unary::Cbrt,
+        "exp" => Unary::Exp,
+        "exp2" => Unary::Exp2,
+        "expm1" => Unary::Expm1,
+        "log" => Unary::Log,
+        "log2" => Unary::Log2,
+        "log10" => Unary::Log10,
+        "logb" => Unary::Logb,
+        "sin" => Unary::Sin,
+        "cos" => Unary::Cos,
+        "tan" => Unary::Tan,
+        "asin" => Unary::Asin,
+        "acos" => Unary::Acos,
+        "atan" => Unary::Atan,
+        "sinh" => Unary::Sinh,
+        "cosh" => Unary::Cosh,
+        "tanh" => Unary::Tanh,
+        "erf" => Unary::Erf,
+        "erfc" => Unary::Erfc,
+        "floor" => Unary::Floor,
+        "ceil" => Unary::Ceil,
+        "round" => Unary::Round,
+        "trunc" => Unary::Trunc,
+        "sign" => Unary::Sign,
+        "abs" | "fabs" => Unary::Abs,
+        _ => return None,
+    })
+}
+
+fn binary_named(name: &str) -> Option<Binary> {
+    Some(match name {
+        "pow" => Binary::Pow,
+        "fmod" => Binary::Mod,
+        "atan2" => Binary::Atan2,
+        "min" => Binary::Min,
+        "max" => Binary::Max,
+        "step" => Binary::Step,
+        _ => return None,
+    })
+}

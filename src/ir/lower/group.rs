@@ -1,0 +1,354 @@
+//! A shader group: layers in order, their parameters bound, their connections joined.
+
+use super::assigned::Assigned;
+use super::value::{Value, kind_of, zero_of};
+use super::{Bound, Builder, Frame, Lower};
+use crate::check::typed::{Shader, VarId};
+use crate::ir::program::*;
+use crate::lang::globals::Global;
+use crate::lang::symbols::Symbol;
+use crate::lang::types::{Base, Element, Type};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What a parameter of a layer gets instead of its default.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Binding {
+    /// Numbers in order, as many as the parameter has components; too few are filled with zero.
+    Numbers(Vec<f64>),
+    /// Strings in order.
+    Strings(Vec<String>),
+    /// The output of an earlier layer: its index, the parameter's name (with `.field` or `[i]`), of the source.
+    Connection(usize, String),
+}
+
+/// A layer of a group.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    /// Its name.
+    pub name: String,
+    /// Its shader.
+    pub shader: Arc<Shader>,
+    /// Parameters that are given, by name (with `.field` or `[i]` for a part).
+    pub bindings: Vec<(String, Binding)>,
+}
+
+/// What to lower for.
+#[derive(Clone, Copy, Debug)]
+pub struct LowerOptions {
+    /// Fold constants and share equal values while building.
+    pub simplify: bool,
+    /// Keep the output parameters of every layer as results.
+    pub outputs: bool,
+}
+
+/// Writes the layers of a group into one program. Bindings have been checked against the shaders' parameters.
+pub fn lower(layers: &[Layer], options: LowerOptions) -> Program {
+    let mut builder = Builder::new(options.simplify);
+    let mut ci = builder.constant(Const::NoClosure);
+    let mut finished: Vec<HashMap<String, (Value, Type)>> = Vec::new();
+    let mut outputs = Vec::new();
+    for layer in layers {
+        let mut lower = Lower {
+            b: builder,
+            shader: &layer.shader,
+            vars: vec![None; layer.shader.variables.len()],
+            level: 0,
+            frames: Vec::new(),
+            loops: Vec::new(),
+            exit: None,
+            assigned: Assigned::default(),
+            connected: Vec::new(),
+            span: layer.shader.span,
+        };
+        lower.layer(layer, &finished, ci);
+        ci = lower.final_ci();
+        let params = lower.final_params();
+        if options.outputs {
+            lower.list_outputs(layer, &params, &mut outputs);
+        }
+        finished.push(params);
+        builder = lower.b;
+    }
+    let mut program = builder.finish();
+    program.result = Some(ci);
+    program.outputs = outputs;
+    program
+}
+
+impl Lower<'_> {
+    fn layer(&mut self, layer: &Layer, finished: &[HashMap<String, (Value, Type)>], ci: Reg) {
+        let ci_var = self.global_var(Global::Ci);
+        self.vars[ci_var.0 as usize] = Some(Bound { value: Value::Regs(vec![ci]), level: 0 });
+        for param in &self.shader.params {
+            self.parameter(param.var, param.default.as_ref(), layer, finished);
+        }
+        let effects = self.assigned.of_stmts(self.shader, &self.shader.body);
+        if !effects.returns && !effects.exits {
+            self.frames.push(Frame { scope: None, result: None });
+            self.stmts(&self.shader.body);
+        } else {
+            let scope = self.b.scope();
+            self.exit = Some(scope);
+            self.frames.push(Frame { scope: Some(scope), result: None });
+            let vars: Vec<VarId> = effects.vars.iter().copied().collect();
+            // A global that is first written inside the body must exist before lanes part.
+            for &var in vars.iter().filter(|var| self.shader.variables[var.0 as usize].global.is_some()) {
+                self.variable(var);
+            }
+            self.region(vars, |l| {
+                l.b.open();
+                l.stmts(&l.shader.body);
+                let block = l.b.close();
+                l.b.push(Node::Scope(scope, block));
+            });
+        }
+    }
+
+    fn global_var(&self, global: Global) -> VarId {
+        let at = self.shader.variables.iter().position(|variable| variable.global == Some(global));
+        VarId(at.unwrap_or(0) as u32)
+    }
+
+    fn parameter(
+        &mut self,
+        var: VarId,
+        default: Option<&crate::check::typed::Expr>,
+        layer: &Layer,
+        finished: &[HashMap<String, (Value, Type)>],
+    ) {
+        let variable = &self.shader.variables[var.0 as usize];
+        let (name, ty) = (variable.name.clone(), variable.ty.clone());
+        let whole = layer.bindings.iter().rev().find(|(target, _)| *target == name);
+        let value = match whole {
+            Some((_, binding)) => self.bound_value(binding, &ty, finished),
+            None => match default {
+                Some(default) => {
+                    let value = self.expr(default);
+                    self.owned(&value, &ty)
+                }
+                None => self.zero(&ty),
+            },
+        };
+        if layer.bindings.iter().any(|(target, b)| root(target) == name && matches!(b, Binding::Connection(..))) {
+            self.connected.push(var);
+        }
+        self.bind(var, value);
+        for (target, binding) in layer.bindings.iter().filter(|(target, _)| *target != name && root(target) == name) {
+            self.bind_part(var, &ty, &target[name.len()..], binding, finished);
+        }
+    }
+
+    /// Binds a part of a parameter, such as `.field` or `[2]`.
+    fn bind_part(
+        &mut self,
+        var: VarId,
+        ty: &Type,
+        path: &str,
+        binding: &Binding,
+        finished: &[HashMap<String, (Value, Type)>],
+    ) {
+        let Some(mut whole) = self.vars[var.0 as usize].clone() else { return };
+        let replaced = self.with_part(&whole.value, ty, path, binding, finished);
+        whole.value = replaced;
+        self.vars[var.0 as usize] = Some(whole);
+    }
+
+    /// The value with the part at `path` replaced.
+    fn with_part(
+        &mut self,
+        value: &Value,
+        ty: &Type,
+        path: &str,
+        binding: &Binding,
+        finished: &[HashMap<String, (Value, Type)>],
+    ) -> Value {
+        let Some((step, rest)) = next_step(path) else { return self.bound_value(binding, ty, finished) };
+        match (value, step) {
+            (Value::Struct(fields), Step::Field(name)) => {
+                let structure = ty.structure().cloned();
+                let at = structure.as_ref().and_then(|s| s.fields.iter().position(|(field, _)| *field == name));
+                let (Some(structure), Some(at)) = (structure, at) else { return value.clone() };
+                let mut fields = fields.clone();
+                fields[at] = self.with_part(&fields[at].clone(), &structure.fields[at].1, rest, binding, finished);
+                Value::Struct(fields)
+            }
+            (Value::Array { .. }, Step::Index(at)) => {
+                let index = self.b.int(at);
+                let item = self.element(value, index);
+                let new = self.bound_value(binding, &ty.element_type(), finished);
+                self.store(&item, &new);
+                value.clone()
+            }
+            (Value::Regs(regs), Step::Index(at)) => {
+                let new = self.bound_value(binding, &Type::FLOAT, finished);
+                let new = self.regs(&new);
+                let mut regs = regs.clone();
+                if let (Some(slot), Some(&new)) = (regs.get_mut(at.max(0) as usize), new.first()) {
+                    *slot = new;
+                }
+                Value::Regs(regs)
+            }
+            _ => value.clone(),
+        }
+    }
+
+    fn bound_value(&mut self, binding: &Binding, ty: &Type, finished: &[HashMap<String, (Value, Type)>]) -> Value {
+        match binding {
+            Binding::Numbers(_) | Binding::Strings(_) => self.constants(binding, ty, &mut 0),
+            Binding::Connection(layer, name) => {
+                let Some((value, from)) = finished.get(*layer).and_then(|params| self.part_of(params, name)) else {
+                    return self.zero(ty);
+                };
+                match (from.base(), ty.base()) {
+                    (Some(a), Some(b)) => {
+                        let regs = self.regs(&value);
+                        let regs: Vec<Reg> = regs.into_iter().map(|reg| self.fixed(reg)).collect();
+                        // A triple that feeds a float is averaged, as OSL does.
+                        if a.is_triple() && b == Base::Float {
+                            return Value::Regs(vec![self.average(&regs)]);
+                        }
+                        Value::Regs(self.convert(&regs, a, b))
+                    }
+                    _ => self.owned(&value, ty),
+                }
+            }
+        }
+    }
+
+    fn average(&mut self, regs: &[Reg]) -> Reg {
+        let third = self.b.float(1.0 / 3.0);
+        self.dot(regs, &[third; 3])
+    }
+
+    /// An output of an earlier layer, or a part of one.
+    fn part_of(&mut self, params: &HashMap<String, (Value, Type)>, name: &str) -> Option<(Value, Type)> {
+        let (mut value, mut ty) = params.get(root(name))?.clone();
+        let mut path = &name[root(name).len()..];
+        while let Some((step, rest)) = next_step(path) {
+            (value, ty) = match (value, step) {
+                (Value::Struct(fields), Step::Field(field)) => {
+                    let at = ty.structure()?.fields.iter().position(|(name, _)| *name == field)?;
+                    (fields[at].clone(), ty.structure()?.fields[at].1.clone())
+                }
+                (value @ Value::Array { .. }, Step::Index(at)) => {
+                    let index = self.b.int(at);
+                    (self.element(&value, index), ty.element_type())
+                }
+                (Value::Regs(regs), Step::Index(at)) => {
+                    (Value::Regs(vec![*regs.get(at.max(0) as usize)?]), Type::FLOAT)
+                }
+                _ => return None,
+            };
+            path = rest;
+        }
+        Some((value, ty))
+    }
+
+    /// A value of constants, taken in order.
+    fn constants(&mut self, binding: &Binding, ty: &Type, next: &mut usize) -> Value {
+        if ty.is_array() {
+            let array = self.allocate(ty, &[]);
+            for at in 0..ty.count() {
+                let value = self.constants(binding, &ty.element_type(), next);
+                let index = self.b.int(at as i32);
+                let item = self.element(&array, index);
+                self.store(&item, &value);
+            }
+            return array;
+        }
+        match &ty.element {
+            Element::Struct(s) => Value::Struct(s.fields.iter().map(|(_, ty)| self.constants(binding, ty, next)).collect()),
+            Element::Base(base) => {
+                let single = matches!(binding, Binding::Numbers(n) if n.len() == 1) && base.is_triple();
+                let mut regs = Vec::new();
+                for _ in 0..base.components() {
+                    let value = constant_at(binding, *base, if single { 0 } else { *next });
+                    regs.push(self.b.constant(value));
+                    *next += 1;
+                }
+                Value::Regs(regs)
+            }
+        }
+    }
+
+    fn final_ci(&mut self) -> Reg {
+        let var = self.global_var(Global::Ci);
+        let value = self.variable(var);
+        let value = self.stable(&value);
+        self.regs(&value)[0]
+    }
+
+    fn final_params(&mut self) -> HashMap<String, (Value, Type)> {
+        let mut out = HashMap::new();
+        for param in &self.shader.params {
+            let variable = &self.shader.variables[param.var.0 as usize];
+            let value = self.variable(param.var);
+            let value = self.stable(&value);
+            out.insert(variable.name.clone(), (value, variable.ty.clone()));
+        }
+        out
+    }
+
+    fn list_outputs(&mut self, layer: &Layer, params: &HashMap<String, (Value, Type)>, outputs: &mut Vec<Output>) {
+        for param in self.shader.params.iter().filter(|param| param.output) {
+            let name = &self.shader.variables[param.var.0 as usize].name;
+            if let Some((value, ty)) = params.get(name) {
+                list_value(&layer.name, name.clone(), value, ty, outputs);
+            }
+        }
+    }
+}
+
+fn list_value(layer: &str, name: String, value: &Value, ty: &Type, outputs: &mut Vec<Output>) {
+    let make = |value| Output { layer: layer.to_owned(), name: name.clone(), ty: ty.clone(), value };
+    match value {
+        Value::Regs(regs) => outputs.push(make(OutputValue::Regs(regs.clone()))),
+        Value::Array { id, .. } => outputs.push(make(OutputValue::Array(*id))),
+        Value::Struct(fields) => {
+            let names = ty.structure().map(|s| s.fields.clone()).unwrap_or_default();
+            for (field, (field_name, ty)) in fields.iter().zip(names) {
+                list_value(layer, format!("{name}.{field_name}"), field, &ty, outputs);
+            }
+        }
+        Value::Item { .. } => {}
+    }
+}
+
+fn constant_at(binding: &Binding, base: Base, at: usize) -> Const {
+    match binding {
+        Binding::Numbers(numbers) => {
+            let number = numbers.get(at).copied().unwrap_or(0.0);
+            match kind_of(base) {
+                Kind::Float => Const::Float(number as f32),
+                Kind::Int => Const::Int(number as i32),
+                other => zero_of(other),
+            }
+        }
+        Binding::Strings(strings) if base == Base::String => {
+            Const::String(strings.get(at).map_or(0, |text| Symbol::new(text).0))
+        }
+        _ => zero_of(kind_of(base)),
+    }
+}
+
+/// The parameter a path such as `a.b[2]` starts from.
+fn root(path: &str) -> &str {
+    &path[..path.find(['.', '[']).unwrap_or(path.len())]
+}
+
+enum Step {
+    Field(String),
+    Index(i32),
+}
+
+/// The first step of a path and the rest of it.
+fn next_step(path: &str) -> Option<(Step, &str)> {
+    if let Some(rest) = path.strip_prefix('.') {
+        let end = rest.find(['.', '[']).unwrap_or(rest.len());
+        return Some((Step::Field(rest[..end].to_owned()), &rest[end..]));
+    }
+    let inside = path.strip_prefix('[')?;
+    let (number, rest) = inside.split_once(']')?;
+    Some((Step::Index(number.trim().parse().ok()?), rest))
+}

@@ -1,0 +1,210 @@
+//! Statements and calls of user functions.
+
+use super::assigned::Effects;
+use super::value::Value;
+use super::{Frame, Lower};
+use crate::check::typed::*;
+use crate::ir::program::{Node, Reg};
+use crate::lang::types::Type;
+
+impl Lower<'_> {
+    pub(super) fn stmts(&mut self, stmts: &[Stmt]) {
+        for stmt in stmts {
+            self.stmt(stmt);
+        }
+    }
+
+    fn stmt(&mut self, stmt: &Stmt) {
+        match stmt {
+            Stmt::Expr(expr) => {
+                self.expr(expr);
+            }
+            Stmt::Declare(var, init) => {
+                let ty = self.shader.variables[var.0 as usize].ty.clone();
+                let value = match init {
+                    Some(init) => {
+                        let value = self.expr(init);
+                        self.owned(&value, &ty)
+                    }
+                    None => self.zero(&ty),
+                };
+                self.bind(*var, value);
+            }
+            Stmt::Block(body) => self.stmts(body),
+            Stmt::If(condition, then, otherwise) => self.if_stmt(condition, then, otherwise),
+            Stmt::Loop { init, condition, step, body, test_last } => {
+                self.stmts(init);
+                self.loop_stmt(condition.as_ref(), step.as_ref(), body, *test_last);
+            }
+            Stmt::Break => {
+                if let Some(&(scope, _)) = self.loops.last() {
+                    self.b.push(Node::Leave(scope));
+                }
+            }
+            Stmt::Continue => {
+                if let Some(&(_, scope)) = self.loops.last() {
+                    self.b.push(Node::Leave(scope));
+                }
+            }
+            Stmt::Return(value) => self.return_stmt(value.as_ref()),
+        }
+    }
+
+    fn effects(&mut self, stmts: &[Stmt], into: &mut Effects) {
+        let effects = self.assigned.of_stmts(self.shader, stmts);
+        into.vars.extend(effects.vars);
+        into.returns |= effects.returns;
+        into.exits |= effects.exits;
+    }
+
+    fn if_stmt(&mut self, condition: &Expr, then: &[Stmt], otherwise: &[Stmt]) {
+        let condition = self.reg(condition);
+        if let Some(known) = self.b.known_int(condition) {
+            return self.stmts(if known != 0 { then } else { otherwise });
+        }
+        let condition = self.fixed(condition);
+        let mut effects = Effects::default();
+        self.effects(then, &mut effects);
+        self.effects(otherwise, &mut effects);
+        self.region(effects.vars.into_iter().collect(), |l| {
+            l.b.open();
+            l.stmts(then);
+            let then = l.b.close();
+            l.b.open();
+            l.stmts(otherwise);
+            let otherwise = l.b.close();
+            l.b.push(Node::If(condition, then, otherwise));
+        });
+    }
+
+    /// A register that the code under it cannot change.
+    pub(super) fn fixed(&mut self, reg: Reg) -> Reg {
+        let mutable = self.b.program.regs[reg.0 as usize].mutable;
+        if mutable { self.b.copy(reg, false) } else { reg }
+    }
+
+    fn loop_stmt(&mut self, condition: Option<&Expr>, step: Option<&Expr>, body: &[Stmt], test_last: bool) {
+        let mut effects = Effects::default();
+        self.effects(body, &mut effects);
+        for expr in condition.into_iter().chain(step) {
+            effects.vars.extend(self.assigned.of_expr(self.shader, expr).vars);
+        }
+        let span = condition.map_or(self.span, |c| c.span);
+        let (leave, next) = (self.b.scope(), self.b.scope());
+        self.region(effects.vars.into_iter().collect(), |l| {
+            l.loops.push((leave, next));
+            l.b.open();
+            l.b.open();
+            if test_last {
+                l.loop_body(body, next);
+            }
+            let test = match condition {
+                Some(condition) => l.reg(condition),
+                None => l.b.int(1),
+            };
+            let head = l.b.close();
+            l.b.open();
+            if !test_last {
+                l.loop_body(body, next);
+            }
+            if let Some(step) = step {
+                l.expr(step);
+            }
+            let body = l.b.close();
+            l.b.push(Node::Loop { head, condition: test, body, span });
+            let scope = l.b.close();
+            l.b.push(Node::Scope(leave, scope));
+            l.loops.pop();
+        });
+    }
+
+    fn loop_body(&mut self, body: &[Stmt], next: crate::ir::program::ScopeId) {
+        self.b.open();
+        self.level += 1;
+        self.stmts(body);
+        self.level -= 1;
+        let body = self.b.close();
+        self.b.push(Node::Scope(next, body));
+    }
+
+    fn return_stmt(&mut self, value: Option<&Expr>) {
+        let value = value.map(|value| self.expr(value));
+        let Some(frame) = self.frames.last() else { return };
+        let (scope, result) = (frame.scope, frame.result.clone());
+        if let (Some(result), Some(value)) = (result, value) {
+            self.store(&result, &value);
+        }
+        if let Some(scope) = scope {
+            self.b.push(Node::Leave(scope));
+        }
+    }
+
+    /// Expands a call of a user function in place.
+    pub(super) fn call(&mut self, id: FunctionId, args: &[Argument]) -> Value {
+        let function = self.shader.functions[id.0 as usize].clone();
+        let mut outputs = Vec::new();
+        let mut values = Vec::new();
+        for (arg, &(var, _)) in args.iter().zip(&function.params) {
+            let value = match arg {
+                Argument::In(expr) => self.expr(expr),
+                Argument::Out(place) => {
+                    let target = self.target(place);
+                    let value = self.load(&target);
+                    // An array is handed over as it is, so nothing has to come back.
+                    if !matches!(value, Value::Array { .. }) {
+                        outputs.push((target, var));
+                    }
+                    value
+                }
+            };
+            values.push(self.stable(&value));
+        }
+        for (value, &(var, _)) in values.into_iter().zip(&function.params) {
+            self.bind(var, value);
+        }
+        let result = self.body(&function.body, &function.returns);
+        for (target, var) in outputs {
+            if let Some(bound) = self.vars[var.0 as usize].clone() {
+                let value = self.stable(&bound.value);
+                self.write(&target, &value);
+            }
+        }
+        result
+    }
+
+    /// The statements of a function, and the value it returns.
+    fn body(&mut self, body: &[Stmt], returns: &Type) -> Value {
+        let effects = self.assigned.of_stmts(self.shader, body);
+        let before_last = &body[..body.len().saturating_sub(1)];
+        let early = self.assigned.of_stmts(self.shader, before_last).returns;
+        let loops = std::mem::take(&mut self.loops);
+        let result = match body.last() {
+            Some(Stmt::Return(value)) if !early => {
+                self.frames.push(Frame { scope: None, result: None });
+                self.stmts(before_last);
+                value.as_ref().map(|value| self.expr(value)).unwrap_or(Value::Regs(Vec::new()))
+            }
+            _ if !effects.returns => {
+                self.frames.push(Frame { scope: None, result: None });
+                self.stmts(body);
+                self.zero(returns)
+            }
+            _ => {
+                let scope = self.b.scope();
+                let mut result = self.zero(returns);
+                self.make_mutable(&mut result);
+                self.frames.push(Frame { scope: Some(scope), result: Some(result.clone()) });
+                self.region(effects.vars.into_iter().collect(), |l| {
+                    l.b.open();
+                    l.stmts(body);
+                    let block = l.b.close();
+                    l.b.push(Node::Scope(scope, block));
+                });
+                result
+            }
+        };
+        self.frames.pop();
+        self.loops = loops;
+        self.stable(&result)
+    }
+}
