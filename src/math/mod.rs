@@ -2,3 +2,4 @@
 
 pub mod columns;
 pub mod elementary;
+pub mod noise;
