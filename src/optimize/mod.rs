@@ -1,1 +1,35 @@
-//! The optimize room.
+//! Program to program: derivatives where they are read, dead code out, uniform values found.
+
+mod dead;
+mod derive;
+mod uniform;
+
+use crate::ir::program::Program;
+
+/// Which passes run besides the ones a program cannot do without.
+#[derive(Clone, Copy, Debug)]
+pub struct OptimizeOptions {
+    /// Remove what no result needs.
+    pub dead_code: bool,
+    /// Keep values that all lanes share as one number.
+    pub uniform: bool,
+}
+
+impl Default for OptimizeOptions {
+    fn default() -> Self {
+        OptimizeOptions { dead_code: true, uniform: true }
+    }
+}
+
+/// Prepares a lowered program for the machine.
+pub fn optimize(mut program: Program, options: OptimizeOptions) -> Program {
+    if options.dead_code {
+        dead::remove(&mut program);
+    }
+    derive::expand(&mut program);
+    if options.dead_code {
+        dead::remove(&mut program);
+    }
+    uniform::mark(&mut program, options.uniform);
+    program
+}

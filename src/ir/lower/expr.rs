@@ -3,7 +3,7 @@
 use super::Lower;
 use super::value::Value;
 use crate::check::typed::*;
-use crate::ir::op::{Input, Unary};
+use crate::ir::op::Input;
 use crate::ir::program::*;
 use crate::lang::closures::ClosureId;
 use crate::lang::globals::Global;
@@ -241,10 +241,5 @@ impl Lower<'_> {
             l.b.push(Node::If(condition, then, otherwise));
         });
         self.stable(&result)
-    }
-
-    /// `-x` of a float
-    pub(super) fn negated(&mut self, reg: Reg) -> Reg {
-        self.b.unary(Unary::Neg, reg)
     }
 }

@@ -1,0 +1,131 @@
+//! A compiled shader group: what a host makes once and shades with for ever.
+
+use crate::ir::op::{Input, Routine};
+use crate::ir::program::*;
+use crate::lang::closures::{ClosureTable, Model};
+use crate::lang::globals::Global;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use velour_grammar::Span;
+
+static NEXT_ID: AtomicU64 = AtomicU64::new(1);
+
+/// Turns a span of the program into text for a message, such as `cloth.osl:3:5`.
+pub type Locate = Arc<dyn Fn(Span) -> String + Send + Sync>;
+
+/// A compiled, optimised shader group.
+#[derive(Clone)]
+pub struct Group {
+    pub(super) id: u64,
+    pub(super) program: Arc<Program>,
+    pub(super) table: Arc<ClosureTable>,
+    pub(super) locate: Locate,
+    inputs: Arc<Vec<(Reg, Input)>>,
+    models: Arc<Vec<Model>>,
+}
+
+impl std::fmt::Debug for Group {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Group").field("id", &self.id).field("program", &self.program).finish_non_exhaustive()
+    }
+}
+
+impl Group {
+    /// A group of an optimised program.
+    pub fn new(program: Program, table: Arc<ClosureTable>, locate: Locate) -> Self {
+        let mut read = vec![false; program.regs.len()];
+        let mut models = Vec::new();
+        visit_instrs(&program.body, &mut |instr| {
+            instr.reads(|reg| read[reg.0 as usize] = true);
+            if let Instr::Leaf { closure, .. } = instr {
+                let model = table.get(*closure).model;
+                if !models.contains(&model) {
+                    models.push(model);
+                }
+            }
+        });
+        mark_conditions(&program.body, &mut read);
+        for output in &program.outputs {
+            if let OutputValue::Regs(regs) = &output.value {
+                regs.iter().for_each(|reg| read[reg.0 as usize] = true);
+            }
+        }
+        let inputs = program.regs.iter().enumerate().filter_map(|(i, info)| match info.source {
+            Source::Input(input) if read[i] => Some((Reg(i as u32), input)),
+            _ => None,
+        });
+        let inputs = Arc::new(inputs.collect());
+        let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
+        Group { id, program: Arc::new(program), table, locate, inputs, models: Arc::new(models) }
+    }
+
+    /// The program.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// The closures it was compiled with.
+    pub fn table(&self) -> &ClosureTable {
+        &self.table
+    }
+
+    /// The inputs it reads and the registers they go to.
+    pub fn inputs(&self) -> &[(Reg, Input)] {
+        &self.inputs
+    }
+
+    /// The scattering models that can occur.
+    pub fn models(&self) -> &[Model] {
+        &self.models
+    }
+
+    /// Does it read a shader global?
+    pub fn reads(&self, global: Global) -> bool {
+        self.inputs.iter().any(|(_, input)| matches!(input, Input::Global(g, _) if *g == global))
+    }
+
+    /// Does it read the derivatives of a shader global?
+    pub fn reads_derivative(&self, global: Global) -> bool {
+        let derived = |input: &Input| matches!(input, Input::GlobalDx(g, _) | Input::GlobalDy(g, _) if *g == global);
+        self.inputs.iter().any(|(_, input)| derived(input))
+    }
+
+    /// Can it emit light?
+    pub fn can_emit(&self) -> bool {
+        self.models.iter().any(|model| matches!(model, Model::Emission | Model::Background))
+    }
+
+    /// Can it scatter light?
+    pub fn can_scatter(&self) -> bool {
+        let other = |model: &Model| !matches!(model, Model::Emission | Model::Background | Model::Holdout | Model::Debug);
+        self.models.iter().any(other)
+    }
+
+    /// Does what it computes differ from point to point?
+    pub fn varies(&self) -> bool {
+        let mut rays = false;
+        visit_instrs(&self.program.body, &mut |instr| {
+            rays |= matches!(instr, Instr::Call { routine: Routine::RayType, .. });
+        });
+        rays || !self.inputs.is_empty()
+    }
+}
+
+fn mark_conditions(block: &Block, read: &mut [bool]) {
+    for node in block {
+        match node {
+            Node::If(condition, a, b) => {
+                read[condition.0 as usize] = true;
+                mark_conditions(a, read);
+                mark_conditions(b, read);
+            }
+            Node::Loop { head, condition, body, .. } => {
+                read[condition.0 as usize] = true;
+                mark_conditions(head, read);
+                mark_conditions(body, read);
+            }
+            Node::Scope(_, body) => mark_conditions(body, read),
+            Node::Instr(_) | Node::Leave(_) => {}
+        }
+    }
+}

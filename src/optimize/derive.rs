@@ -1,0 +1,485 @@
+//! Derivatives: forward differentiation of exactly the values whose derivatives are read.
+//!
+//! A first walk, repeated until nothing changes, finds the registers that matter: sources of [`Instr::Derivative`] and
+//! whatever they are computed from. A second walk writes, after each instruction that computes such a register, the
+//! instructions for its two derivatives. What has no derivative (ints, strings, constants, steps) counts as zero.
+
+use crate::ir::op::*;
+use crate::ir::program::*;
+use crate::lang::globals::Global;
+use std::collections::HashMap;
+
+/// Replaces every [`Instr::Derivative`] by the derivative itself.
+pub fn expand(program: &mut Program) {
+    let mut needs = Needs { regs: vec![false; program.regs.len()], arrays: vec![false; program.arrays.len()], changed: true };
+    while needs.changed {
+        needs.changed = false;
+        visit_instrs(&program.body, &mut |instr| needs.instr(instr));
+    }
+    if !needs.regs.contains(&true) && !has_derivatives(&program.body) {
+        return;
+    }
+    let body = std::mem::take(&mut program.body);
+    let mut writer = Writer { program, needs, slopes: HashMap::new(), arrays: HashMap::new(), zero: None, out: Vec::new() };
+    let body = writer.block(body);
+    program.body = body;
+}
+
+fn has_derivatives(block: &Block) -> bool {
+    let mut found = false;
+    visit_instrs(block, &mut |instr| found |= matches!(instr, Instr::Derivative(..)));
+    found
+}
+
+struct Needs {
+    regs: Vec<bool>,
+    arrays: Vec<bool>,
+    changed: bool,
+}
+
+impl Needs {
+    fn mark(&mut self, reg: Reg) {
+        let slot = &mut self.regs[reg.0 as usize];
+        self.changed |= !*slot;
+        *slot = true;
+    }
+
+    fn instr(&mut self, instr: &Instr) {
+        if let Instr::Derivative(_, src, _) = instr {
+            return self.mark(*src);
+        }
+        if let Instr::ArraySet { array, src, .. } = instr {
+            if self.arrays[array.0 as usize] {
+                self.mark(*src);
+            }
+            return;
+        }
+        let mut wanted = false;
+        instr.writes(|reg| wanted |= self.regs[reg.0 as usize]);
+        if !wanted {
+            return;
+        }
+        match instr {
+            Instr::Unary(op, _, a) if !is_step(*op) => self.mark(*a),
+            Instr::Binary(Binary::Step, ..) => {}
+            Instr::Binary(_, _, a, b) | Instr::Select(_, _, a, b) => {
+                self.mark(*a);
+                self.mark(*b);
+            }
+            Instr::Move { src, .. } => self.mark(*src),
+            Instr::ArrayGet { array, .. } => {
+                let slot = &mut self.arrays[array.0 as usize];
+                self.changed |= !*slot;
+                *slot = true;
+            }
+            Instr::Call { routine: Routine::Noise(noise), src, .. } if has_slope(noise.kind) => {
+                src[..noise.dims as usize].iter().for_each(|&reg| self.mark(reg));
+            }
+            Instr::Call { routine: Routine::Spline, src, .. } => self.mark(src[1]),
+            _ => {}
+        }
+    }
+}
+
+fn has_slope(kind: NoiseKind) -> bool {
+    !matches!(kind, NoiseKind::Cell | NoiseKind::Hash)
+}
+
+fn is_step(op: Unary) -> bool {
+    matches!(op, Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc | Unary::Sign | Unary::Logb)
+}
+
+/// The two derivatives of a register; `None` for zero.
+type Slope = [Option<Reg>; 2];
+
+struct Writer<'p> {
+    program: &'p mut Program,
+    needs: Needs,
+    slopes: HashMap<Reg, Slope>,
+    arrays: HashMap<ArrayId, [ArrayId; 2]>,
+    zero: Option<Reg>,
+    out: Block,
+}
+
+impl Writer<'_> {
+    fn block(&mut self, block: Block) -> Block {
+        let outer = std::mem::take(&mut self.out);
+        for node in block {
+            let node = match node {
+                Node::Instr(instr) => {
+                    self.instr(instr);
+                    continue;
+                }
+                Node::If(condition, a, b) => Node::If(condition, self.block(a), self.block(b)),
+                Node::Loop { head, condition, body, span } => {
+                    Node::Loop { head: self.block(head), condition, body: self.block(body), span }
+                }
+                Node::Scope(id, body) => Node::Scope(id, self.block(body)),
+                leave @ Node::Leave(_) => leave,
+            };
+            self.out.push(node);
+        }
+        std::mem::replace(&mut self.out, outer)
+    }
+
+    fn emit(&mut self, instr: Instr) {
+        self.out.push(Node::Instr(instr));
+    }
+
+    fn constant(&mut self, value: f32) -> Reg {
+        let source = Source::Const(Const::Float(value));
+        self.program.regs.push(RegInfo { kind: Kind::Float, source, mutable: false, uniform: true });
+        Reg(self.program.regs.len() as u32 - 1)
+    }
+
+    fn zero(&mut self) -> Reg {
+        if self.zero.is_none() {
+            self.zero = Some(self.constant(0.0));
+        }
+        self.zero.unwrap_or(Reg(0))
+    }
+
+    fn input(&mut self, input: Input) -> Reg {
+        let source = Source::Input(input);
+        self.program.regs.push(RegInfo { kind: Kind::Float, source, mutable: false, uniform: false });
+        Reg(self.program.regs.len() as u32 - 1)
+    }
+
+    /// The derivatives of a register.
+    fn slope(&mut self, reg: Reg) -> Slope {
+        if let Some(&slope) = self.slopes.get(&reg) {
+            return slope;
+        }
+        let info = self.program.regs[reg.0 as usize];
+        let slope = match info.source {
+            Source::Input(Input::Global(global @ (Global::P | Global::Ps | Global::I | Global::U | Global::V), c)) => {
+                [Some(self.input(Input::GlobalDx(global, c))), Some(self.input(Input::GlobalDy(global, c)))]
+            }
+            Source::Code if info.mutable && info.kind == Kind::Float => {
+                [Some(self.program.reg(Kind::Float, true)), Some(self.program.reg(Kind::Float, true))]
+            }
+            _ => [None, None],
+        };
+        self.slopes.insert(reg, slope);
+        slope
+    }
+
+    fn un(&mut self, op: Unary, a: Reg) -> Reg {
+        let dst = self.program.reg(Kind::Float, false);
+        self.emit(Instr::Unary(op, dst, a));
+        dst
+    }
+
+    fn bin(&mut self, op: Binary, a: Reg, b: Reg) -> Reg {
+        let dst = self.program.reg(Kind::Float, false);
+        self.emit(Instr::Binary(op, dst, a, b));
+        dst
+    }
+
+    fn mul(&mut self, slope: Option<Reg>, factor: Reg) -> Option<Reg> {
+        slope.map(|slope| self.bin(Binary::Mul, slope, factor))
+    }
+
+    fn add(&mut self, a: Option<Reg>, b: Option<Reg>) -> Option<Reg> {
+        match (a, b) {
+            (Some(a), Some(b)) => Some(self.bin(Binary::Add, a, b)),
+            (one, None) | (None, one) => one,
+        }
+    }
+
+    /// Emits an instruction, and after it the derivatives of what it computed.
+    fn instr(&mut self, instr: Instr) {
+        if let Instr::Derivative(dst, src, along_y) = instr {
+            let slope = self.slope(src)[along_y as usize];
+            let src = slope.unwrap_or_else(|| self.zero());
+            return self.emit(Instr::Move { dst, src, masked: true });
+        }
+        let mut wanted = false;
+        instr.writes(|reg| wanted |= self.needs.regs.get(reg.0 as usize).copied().unwrap_or(false));
+        if let Instr::ArraySet { array, .. } = instr {
+            wanted = self.needs.arrays[array.0 as usize];
+        }
+        if wanted {
+            self.with_slope(instr);
+        } else {
+            self.emit(instr);
+        }
+    }
+
+    fn with_slope(&mut self, instr: Instr) {
+        match instr {
+            Instr::Unary(op, dst, a) => {
+                self.emit(instr);
+                let from = self.slope(a);
+                if !is_step(op) && from != [None, None] {
+                    let factor = self.unary_factor(op, a, dst);
+                    let slope = from.map(|slope| self.mul(slope, factor));
+                    self.slopes.insert(dst, slope);
+                }
+            }
+            Instr::Binary(op, dst, a, b) => {
+                self.emit(instr);
+                let slope = self.binary_slope(op, dst, a, b);
+                self.slopes.insert(dst, slope);
+            }
+            Instr::Select(dst, c, a, b) => {
+                self.emit(instr);
+                let slope = self.choose(c, a, b);
+                self.slopes.insert(dst, slope);
+            }
+            Instr::Move { dst, src, .. } => self.move_slope(instr, dst, src),
+            Instr::ArrayGet { .. } | Instr::ArraySet { .. } => self.array_slope(instr),
+            Instr::Call { routine: Routine::Noise(noise), dst, src, span } if has_slope(noise.kind) => {
+                self.noise_slope(noise, dst, src, span);
+            }
+            Instr::Call { routine: Routine::Spline, ref dst, ref src, .. } => {
+                let (value, slope_of_x, x) = (dst[0], dst[1], src[1]);
+                self.emit(instr);
+                let slope = self.slope(x).map(|slope| self.mul(slope, slope_of_x));
+                self.slopes.insert(value, slope);
+            }
+            other => self.emit(other),
+        }
+    }
+
+    fn move_slope(&mut self, instr: Instr, dst: Reg, src: Reg) {
+        let from = self.slope(src);
+        self.emit(instr);
+        if !self.program.regs[dst.0 as usize].mutable {
+            // The source may be mutable and change later, so its derivatives are copied as well.
+            let copy = from.map(|slope| {
+                slope.map(|src| {
+                    let dst = self.program.reg(Kind::Float, false);
+                    self.emit(Instr::Move { dst, src, masked: true });
+                    dst
+                })
+            });
+            self.slopes.insert(dst, copy);
+            return;
+        }
+        for (to, from) in self.slope(dst).into_iter().zip(from) {
+            let src = from.unwrap_or_else(|| self.zero());
+            if let Some(dst) = to {
+                self.emit(Instr::Move { dst, src, masked: true });
+            }
+        }
+    }
+
+    /// `c ? da : db`
+    fn choose(&mut self, c: Reg, a: Reg, b: Reg) -> Slope {
+        let (a, b) = (self.slope(a), self.slope(b));
+        let mut out = [None; 2];
+        for (i, slot) in out.iter_mut().enumerate() {
+            if a[i].is_some() || b[i].is_some() {
+                let (x, y) = (a[i].unwrap_or_else(|| self.zero()), b[i].unwrap_or_else(|| self.zero()));
+                let dst = self.program.reg(Kind::Float, false);
+                self.emit(Instr::Select(dst, c, x, y));
+                *slot = Some(dst);
+            }
+        }
+        out
+    }
+
+    /// The derivative of `op` at `a`, where `y` holds `op a`.
+    fn unary_factor(&mut self, op: Unary, a: Reg, y: Reg) -> Reg {
+        let one = self.constant(1.0);
+        match op {
+            Unary::Neg => self.constant(-1.0),
+            Unary::Abs => self.un(Unary::Sign, a),
+            Unary::Sqrt => {
+                let half = self.constant(0.5);
+                self.bin(Binary::Div, half, y)
+            }
+            Unary::InverseSqrt => {
+                let (square, half) = (self.bin(Binary::Mul, y, y), self.constant(-0.5));
+                let cube = self.bin(Binary::Mul, square, y);
+                self.bin(Binary::Mul, half, cube)
+            }
+            Unary::Cbrt => {
+                let (square, third) = (self.bin(Binary::Mul, y, y), self.constant(1.0 / 3.0));
+                self.bin(Binary::Div, third, square)
+            }
+            Unary::Exp => y,
+            Unary::Exp2 => self.scaled(y, std::f32::consts::LN_2),
+            Unary::Expm1 => self.bin(Binary::Add, y, one),
+            Unary::Log => self.bin(Binary::Div, one, a),
+            Unary::Log2 | Unary::Log10 => {
+                let base: f32 = if op == Unary::Log2 { 2.0 } else { 10.0 };
+                let scale = self.constant(1.0 / base.ln());
+                self.bin(Binary::Div, scale, a)
+            }
+            Unary::Sin => self.un(Unary::Cos, a),
+            Unary::Cos => {
+                let sine = self.un(Unary::Sin, a);
+                self.un(Unary::Neg, sine)
+            }
+            Unary::Tan => {
+                let square = self.bin(Binary::Mul, y, y);
+                self.bin(Binary::Add, one, square)
+            }
+            Unary::Sinh => self.un(Unary::Cosh, a),
+            Unary::Cosh => self.un(Unary::Sinh, a),
+            Unary::Tanh => {
+                let square = self.bin(Binary::Mul, y, y);
+                self.bin(Binary::Sub, one, square)
+            }
+            Unary::Erf | Unary::Erfc => self.error_function_factor(op, a),
+            _ => self.arc_factor(op, a),
+        }
+    }
+
+    fn scaled(&mut self, a: Reg, factor: f32) -> Reg {
+        let factor = self.constant(factor);
+        self.bin(Binary::Mul, a, factor)
+    }
+
+    /// `±2/√π exp(-a²)`
+    fn error_function_factor(&mut self, op: Unary, a: Reg) -> Reg {
+        let square = self.bin(Binary::Mul, a, a);
+        let minus = self.un(Unary::Neg, square);
+        let bell = self.un(Unary::Exp, minus);
+        let sign = if op == Unary::Erf { 1.0 } else { -1.0 };
+        self.scaled(bell, sign * std::f32::consts::FRAC_2_SQRT_PI)
+    }
+
+    /// `asin`, `acos`: ±1/√(1-a²); `atan`: 1/(1+a²). At the ends of the domain the derivative counts as zero.
+    fn arc_factor(&mut self, op: Unary, a: Reg) -> Reg {
+        let one = self.constant(1.0);
+        let square = self.bin(Binary::Mul, a, a);
+        if op == Unary::Atan {
+            let sum = self.bin(Binary::Add, one, square);
+            return self.bin(Binary::Div, one, sum);
+        }
+        let rest = self.bin(Binary::Sub, one, square);
+        let root = self.un(Unary::InverseSqrt, rest);
+        if op == Unary::Acos { self.un(Unary::Neg, root) } else { root }
+    }
+
+    fn binary_slope(&mut self, op: Binary, y: Reg, a: Reg, b: Reg) -> Slope {
+        let (da, db) = (self.slope(a), self.slope(b));
+        if op == Binary::Step || (da == [None, None] && db == [None, None]) {
+            return [None, None];
+        }
+        match op {
+            Binary::Min | Binary::Max => {
+                let op = if op == Binary::Min { Compare::Lt } else { Compare::Gt };
+                let second = self.program.reg(Kind::Int, false);
+                self.emit(Instr::Compare(op, second, b, a));
+                self.choose(second, b, a)
+            }
+            // The derivative of the remainder is taken as that of the dividend, as OSL does.
+            Binary::Mod => da,
+            Binary::Pow => self.pow_slope(y, a, b, da, db),
+            _ => {
+                let mut out = [None; 2];
+                for (i, slot) in out.iter_mut().enumerate() {
+                    *slot = self.linear_slope(op, y, a, b, da[i], db[i]);
+                }
+                out
+            }
+        }
+    }
+
+    fn linear_slope(&mut self, op: Binary, y: Reg, a: Reg, b: Reg, da: Option<Reg>, db: Option<Reg>) -> Option<Reg> {
+        let negative = |w: &mut Self, slope: Option<Reg>| slope.map(|slope| w.un(Unary::Neg, slope));
+        match op {
+            Binary::Add => self.add(da, db),
+            Binary::Sub => {
+                let minus = negative(self, db);
+                self.add(da, minus)
+            }
+            Binary::Mul => {
+                let (left, right) = (self.mul(da, b), self.mul(db, a));
+                self.add(left, right)
+            }
+            Binary::Div => {
+                // (da - y db) / b
+                let product = self.mul(db, y);
+                let minus = negative(self, product);
+                let sum = self.add(da, minus);
+                sum.map(|sum| self.bin(Binary::Div, sum, b))
+            }
+            _ => {
+                // atan2(a, b): (b da - a db) / (a² + b²)
+                let (left, right) = (self.mul(da, b), self.mul(db, a));
+                let minus = negative(self, right);
+                let sum = self.add(left, minus);
+                let (aa, bb) = (self.bin(Binary::Mul, a, a), self.bin(Binary::Mul, b, b));
+                let square = self.bin(Binary::Add, aa, bb);
+                sum.map(|sum| self.bin(Binary::Div, sum, square))
+            }
+        }
+    }
+
+    /// `b a^(b-1) da + a^b ln a db`
+    fn pow_slope(&mut self, y: Reg, a: Reg, b: Reg, da: Slope, db: Slope) -> Slope {
+        let one = self.constant(1.0);
+        let less = self.bin(Binary::Sub, b, one);
+        let power = self.bin(Binary::Pow, a, less);
+        let by_a = self.bin(Binary::Mul, b, power);
+        let by_b = if db == [None, None] {
+            one
+        } else {
+            let log = self.un(Unary::Log, a);
+            self.bin(Binary::Mul, y, log)
+        };
+        let mut out = [None; 2];
+        for i in 0..2 {
+            let (left, right) = (self.mul(da[i], by_a), self.mul(db[i], by_b));
+            out[i] = self.add(left, right);
+        }
+        out
+    }
+
+    fn array_slope(&mut self, instr: Instr) {
+        let (Instr::ArrayGet { array, .. } | Instr::ArraySet { array, .. }) = instr else { return };
+        let info = self.program.arrays[array.0 as usize];
+        let program = &mut *self.program;
+        let twins = *self.arrays.entry(array).or_insert_with(|| {
+            [0, 1].map(|_| {
+                program.arrays.push(info);
+                ArrayId(program.arrays.len() as u32 - 1)
+            })
+        });
+        self.emit(instr.clone());
+        match instr {
+            Instr::ArrayGet { dst, component, index, span, .. } => {
+                let slope = twins.map(|array| {
+                    let dst = self.program.reg(Kind::Float, false);
+                    self.emit(Instr::ArrayGet { dst, array, component, index, span });
+                    Some(dst)
+                });
+                self.slopes.insert(dst, slope);
+            }
+            Instr::ArraySet { component, index, src, masked, span, .. } => {
+                let from = self.slope(src);
+                for (array, slope) in twins.into_iter().zip(from) {
+                    let src = slope.unwrap_or_else(|| self.zero());
+                    self.emit(Instr::ArraySet { array, component, index, src, masked, span });
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Asks the noise for its gradient as well and applies the chain rule.
+    fn noise_slope(&mut self, mut noise: Noise, mut dst: Vec<Reg>, src: Vec<Reg>, span: velour_grammar::Span) {
+        let (dims, outputs) = (noise.dims as usize, noise.outputs as usize);
+        noise.gradient = true;
+        let values = dst.clone();
+        dst.extend((0..dims * outputs).map(|_| self.program.reg(Kind::Float, false)));
+        let gradient = dst[outputs..].to_vec();
+        let inputs: Vec<Slope> = src[..dims].iter().map(|&reg| self.slope(reg)).collect();
+        self.emit(Instr::Call { routine: Routine::Noise(noise), dst, src, span });
+        for (o, value) in values.into_iter().enumerate() {
+            let mut slope = [None; 2];
+            for (axis, slot) in slope.iter_mut().enumerate() {
+                for d in 0..dims {
+                    let part = self.mul(inputs[d][axis], gradient[o * dims + d]);
+                    *slot = self.add(*slot, part);
+                }
+            }
+            self.slopes.insert(value, slope);
+        }
+    }
+}
