@@ -1,1 +1,26 @@
-//! The ops room.
+//! The one meaning of every builtin that is more than one arithmetic step, as plain functions on single lanes.
+//!
+//! Constant folding and execution call the same functions, so a folded program and a run one agree to the bit. Functions on
+//! numbers have no branches where both sides are cheap, so that a loop over lanes turns into SIMD. None of them panics.
+//!
+//! | subject | module |
+//! |---|---|
+//! | division, rounding, roots and logarithms with OSL's limits, steps and mixes | [`arithmetic`] |
+//! | luminance, black bodies, wavelengths, colour spaces | [`color`] |
+//! | reflection, refraction, Fresnel's formula | [`fresnel`] |
+//! | the `hash` overloads | [`hash`] |
+//! | matrices and what they do to points, vectors and normals | [`matrix`] |
+//! | `format` and its checks | [`format`] |
+//! | regular expressions | [`pattern`] |
+//! | splines and their inverse | [`spline`] |
+//! | strings | [`string`] |
+
+pub mod arithmetic;
+pub mod color;
+pub mod format;
+pub mod fresnel;
+pub mod hash;
+pub mod matrix;
+pub mod pattern;
+pub mod spline;
+pub mod string;
