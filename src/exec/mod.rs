@@ -1,1 +1,21 @@
-//! The exec room.
+//! Program and points to closure tree: the machine that runs shaders over batches.
+//!
+//! A register is a column, one number a lane, or one number for all lanes when the optimizer found it uniform. Each
+//! instruction is decoded once and then loops over the lanes ([`kernels`]). Control flow narrows a mask; what only some
+//! lanes do is blended in by masked moves.
+
+mod arrays;
+mod closures;
+mod group;
+mod host;
+mod kernels;
+mod machine;
+mod noise;
+mod points;
+mod routines;
+mod text;
+
+pub use group::{Group, Locate};
+pub use host::{Attribute, Host, Report};
+pub use machine::{DEFAULT_BUDGET, Machine};
+pub use points::{MAX_LANES, Points, RAY_TYPES};

@@ -2,9 +2,7 @@
 
 use super::op::*;
 use crate::math::elementary as e;
-
-/// Smallest and largest numbers that the domain rules give.
-const LOWEST: f32 = -f32::MAX;
+use crate::ops::arithmetic as o;
 
 /// A float operation.
 #[inline(always)]
@@ -12,21 +10,21 @@ pub fn unary(op: Unary, a: f32) -> f32 {
     match op {
         Unary::Neg => -a,
         Unary::Abs => a.abs(),
-        Unary::Sqrt => if a > 0.0 { a.sqrt() } else { 0.0 },
-        Unary::InverseSqrt => if a > 0.0 { 1.0 / a.sqrt() } else { 0.0 },
+        Unary::Sqrt => o::sqrt(a),
+        Unary::InverseSqrt => o::inversesqrt(a),
         Unary::Cbrt => e::cbrt(a),
         Unary::Exp => e::exp(a),
         Unary::Exp2 => e::exp2(a),
         Unary::Expm1 => e::expm1(a),
-        Unary::Log => if a > 0.0 { e::ln(a) } else { LOWEST },
-        Unary::Log2 => if a > 0.0 { e::log2(a) } else { LOWEST },
-        Unary::Log10 => if a > 0.0 { e::log10(a) } else { LOWEST },
-        Unary::Logb => if a == 0.0 { LOWEST } else { e::logb(a) },
+        Unary::Log => o::log(a),
+        Unary::Log2 => o::log2(a),
+        Unary::Log10 => o::log10(a),
+        Unary::Logb => o::logb(a),
         Unary::Sin => e::sin(a),
         Unary::Cos => e::cos(a),
         Unary::Tan => e::tan(a),
-        Unary::Asin => e::asin(a.clamp(-1.0, 1.0)),
-        Unary::Acos => e::acos(a.clamp(-1.0, 1.0)),
+        Unary::Asin => o::asin(a),
+        Unary::Acos => o::acos(a),
         Unary::Atan => e::atan(a),
         Unary::Sinh => e::sinh(a),
         Unary::Cosh => e::cosh(a),
@@ -37,7 +35,7 @@ pub fn unary(op: Unary, a: f32) -> f32 {
         Unary::Ceil => e::ceil(a),
         Unary::Round => e::round(a),
         Unary::Trunc => e::trunc(a),
-        Unary::Sign => if a > 0.0 { 1.0 } else if a < 0.0 { -1.0 } else { 0.0 },
+        Unary::Sign => o::sign(a),
     }
 }
 
@@ -48,19 +46,13 @@ pub fn binary(op: Binary, a: f32, b: f32) -> f32 {
         Binary::Add => a + b,
         Binary::Sub => a - b,
         Binary::Mul => a * b,
-        Binary::Div => {
-            let q = a / b;
-            if q.is_finite() { q } else { 0.0 }
-        }
-        Binary::Mod => if b != 0.0 { a % b } else { 0.0 },
-        Binary::Pow => {
-            let p = e::pow(a, b);
-            if p.is_finite() { p } else { 0.0 }
-        }
+        Binary::Div => o::div(a, b),
+        Binary::Mod => o::fmod(a, b),
+        Binary::Pow => o::pow(a, b),
         Binary::Atan2 => e::atan2(a, b),
-        Binary::Min => if b < a { b } else { a },
-        Binary::Max => if a < b { b } else { a },
-        Binary::Step => if b < a { 0.0 } else { 1.0 },
+        Binary::Min => o::min(a, b),
+        Binary::Max => o::max(a, b),
+        Binary::Step => o::step(a, b),
     }
 }
 
@@ -106,10 +98,10 @@ pub fn int_binary(op: IntBinary, a: i32, b: i32) -> i32 {
         Add => a.wrapping_add(b),
         Sub => a.wrapping_sub(b),
         Mul => a.wrapping_mul(b),
-        Div => if b == 0 { 0 } else { a.wrapping_div(b) },
-        Mod => if b == 0 { 0 } else { a.wrapping_rem(b) },
-        Shl => a.wrapping_shl(b as u32),
-        Shr => a.wrapping_shr(b as u32),
+        Div => o::int_div(a, b),
+        Mod => o::int_mod(a, b),
+        Shl => o::shl(a, b),
+        Shr => o::shr(a, b),
         BitAnd => a & b,
         BitOr => a | b,
         BitXor => a ^ b,
@@ -129,5 +121,5 @@ pub fn int_binary(op: IntBinary, a: i32, b: i32) -> i32 {
 /// A float cut to an int; out of range it saturates, not-a-number gives 0.
 #[inline(always)]
 pub fn float_to_int(a: f32) -> i32 {
-    a as i32
+    o::to_int(a)
 }
