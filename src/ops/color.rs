@@ -1,0 +1,322 @@
+//! Colour: luminance, black bodies, single wavelengths and the colour spaces of `transformc`.
+//!
+//! RGB means linear light with the primaries and the white of Rec. 709, which is what OSL assumes unless told otherwise.
+
+use super::arithmetic::{max, min, pow};
+use super::matching::CIE_1931;
+use crate::math::elementary::{cbrt, expm1, floor, pow_positive};
+use std::sync::LazyLock;
+
+/// Rows X, Y, Z of Rec. 709 red, green and blue: `xyz = rgb M`. Derived in `f64` from the chromaticities (0.64, 0.33),
+/// (0.30, 0.60), (0.15, 0.06) and white (0.3127, 0.3291), which OSL uses; ITU-R BT.709 has the white at (0.3127, 0.3290).
+const RGB_TO_XYZ: [[f32; 3]; 3] = [
+    [0.412_135_33, 0.212_507_28, 0.019_318_843],
+    [0.357_675, 0.715_35, 0.119_225],
+    [0.180_356_8, 0.072_142_72, 0.949_879_1],
+];
+
+/// The inverse of [`RGB_TO_XYZ`].
+const XYZ_TO_RGB: [[f32; 3]; 3] = [
+    [3.242_979, -0.968_998, 0.055_668_324],
+    [-1.538_336_2, 1.875_492, -0.204_117_19],
+    [-0.498_919_84, 0.041_544_524, 1.057_698_2],
+];
+
+/// NTSC's luma and chroma axes, as in Foley and van Dam: `yiq = rgb M`.
+const RGB_TO_YIQ: [[f32; 3]; 3] = [[0.299, 0.596, 0.212], [0.587, -0.275, -0.523], [0.114, -0.321, 0.311]];
+
+/// The inverse of [`RGB_TO_YIQ`] to four digits, as OSL has it.
+const YIQ_TO_RGB: [[f32; 3]; 3] = [[1.0, 1.0, 1.0], [0.9557, -0.2716, -1.1082], [0.6199, -0.6469, 1.7051]];
+
+#[inline(always)]
+fn times(c: [f32; 3], m: &[[f32; 3]; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|k| c[0] * m[0][k] + c[1] * m[1][k] + c[2] * m[2][k])
+}
+
+/// The weights of [`luminance`], for its derivative: it is linear.
+pub const LUMINANCE_WEIGHTS: [f32; 3] = [0.212_507_28, 0.715_35, 0.072_142_72];
+
+/// The luminance of linear RGB, Y of CIE XYZ.
+#[inline(always)]
+pub fn luminance(rgb: [f32; 3]) -> f32 {
+    rgb[0] * LUMINANCE_WEIGHTS[0] + rgb[1] * LUMINANCE_WEIGHTS[1] + rgb[2] * LUMINANCE_WEIGHTS[2]
+}
+
+fn without_negatives(rgb: [f32; 3]) -> [f32; 3] {
+    rgb.map(|c| if c > 0.0 { c } else { 0.0 })
+}
+
+/// Below this temperature (kelvin) nothing is visible: the Draper point, rounded.
+const COLDEST: f32 = 800.0;
+/// Up to this temperature a table is used.
+const HOTTEST: f32 = 12_000.0;
+/// Entries so that the last lies beyond [`HOTTEST`]: 2 * 316^1.5 + 800 = 12034.
+const ENTRIES: usize = 318;
+
+/// Fifth roots of black-body colours at the temperatures 2 i^1.5 + 800.
+static BLACKBODY: LazyLock<[[f32; 3]; ENTRIES]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let i = i as f32;
+        blackbody_by_integral(i * i.sqrt() * 2.0 + COLDEST).map(|c| pow(c, 0.2))
+    })
+});
+
+/// The colour of a black body by Planck's law, integrated over the visible range in steps of 5 nm.
+fn blackbody_by_integral(kelvin: f32) -> [f32; 3] {
+    // 2 pi h c^2 in W m^2 and h c / k in m K, with the digits that OSL uses.
+    const C1: f32 = 3.741_83e-16;
+    const C2: f32 = 1.438_8e-2;
+    let mut xyz = [0.0f32; 3];
+    for (i, match_) in CIE_1931.iter().enumerate() {
+        let metres = (380.0 + 5.0 * i as f32) * 1e-9;
+        // The fifth power is below the least normal f32.
+        let fifth = (metres as f64).powi(5);
+        let exitance = (C1 as f64 / fifth) as f32 / expm1(C2 / (metres * kelvin)) * 5e-9;
+        for k in 0..3 {
+            xyz[k] += exitance * match_[k];
+        }
+    }
+    without_negatives(times(xyz, &XYZ_TO_RGB))
+}
+
+/// The linear RGB radiant exitance (W/m^2, weighted by the matching functions) of a black body.
+///
+/// Source: OSL, with its table of fifth roots, interpolated, good to 0.1 %; the integral itself above 12000 K.
+/// Domain: kelvin. Gives: non-negative. Degenerate cases: a trace of red below 800 K and for NaN.
+pub fn blackbody(kelvin: f32) -> [f32; 3] {
+    if kelvin >= HOTTEST {
+        return blackbody_by_integral(kelvin);
+    }
+    if kelvin >= COLDEST {
+        let root = cbrt((kelvin - COLDEST) / 2.0);
+        let place = root * root;
+        let first = (place as usize).min(ENTRIES - 2);
+        let t = place - first as f32;
+        let (a, b) = (BLACKBODY[first], BLACKBODY[first + 1]);
+        return [0, 1, 2].map(|k| {
+            let fifth_root = a[k] * (1.0 - t) + b[k] * t;
+            let square = fifth_root * fifth_root;
+            square * square * fifth_root
+        });
+    }
+    [1e-6, 0.0, 0.0]
+}
+
+/// The linear RGB of light of a single wavelength, brought to at most about 1.
+///
+/// Source: CIE 1931 colour matching, interpolated, over 2.52 as in OSL. Domain: nanometres. Gives: non-negative.
+/// Degenerate cases: black outside [380, 780) and for NaN.
+pub fn wavelength_color(nanometres: f32) -> [f32; 3] {
+    let place = (nanometres - 380.0) / 5.0;
+    // Truncation towards zero lets the 5 nm below 380 extrapolate, as in OSL.
+    if !(place > -1.0 && place < 80.0) {
+        return [0.0; 3];
+    }
+    let first = place as usize;
+    let t = place - first as f32;
+    let xyz = [0, 1, 2].map(|k| CIE_1931[first][k] * (1.0 - t) + CIE_1931[first + 1][k] * t);
+    without_negatives(times(xyz, &XYZ_TO_RGB).map(|c| c * (1.0 / 2.52)))
+}
+
+/// A colour space that [`transformc`] knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorSpace {
+    /// Linear RGB: `rgb`, `RGB`, `linear`, `Rec709`.
+    Rgb,
+    /// Hue, saturation, value.
+    Hsv,
+    /// Hue, saturation, lightness.
+    Hsl,
+    /// NTSC luma and chroma.
+    Yiq,
+    /// CIE XYZ.
+    Xyz,
+    /// CIE chromaticity and luminance.
+    XyY,
+    /// RGB with the transfer curve of sRGB.
+    Srgb,
+}
+
+impl ColorSpace {
+    /// The space of this name.
+    pub fn from_name(name: &str) -> Option<ColorSpace> {
+        Some(match name {
+            "rgb" | "RGB" | "linear" | "Rec709" => ColorSpace::Rgb,
+            "hsv" => ColorSpace::Hsv,
+            "hsl" => ColorSpace::Hsl,
+            "YIQ" => ColorSpace::Yiq,
+            "XYZ" => ColorSpace::Xyz,
+            "xyY" => ColorSpace::XyY,
+            "sRGB" => ColorSpace::Srgb,
+            _ => return None,
+        })
+    }
+}
+
+/// A colour in another space.
+pub fn transformc(from: ColorSpace, to: ColorSpace, c: [f32; 3]) -> [f32; 3] {
+    let rgb = match from {
+        ColorSpace::Rgb => c,
+        ColorSpace::Hsv => hsv_to_rgb(c),
+        ColorSpace::Hsl => hsl_to_rgb(c),
+        ColorSpace::Yiq => times(c, &YIQ_TO_RGB),
+        ColorSpace::Xyz => times(c, &XYZ_TO_RGB),
+        ColorSpace::XyY => times(xyy_to_xyz(c), &XYZ_TO_RGB),
+        ColorSpace::Srgb => c.map(srgb_to_linear),
+    };
+    match to {
+        ColorSpace::Rgb => rgb,
+        ColorSpace::Hsv => rgb_to_hsv(rgb),
+        ColorSpace::Hsl => rgb_to_hsl(rgb),
+        ColorSpace::Yiq => times(rgb, &RGB_TO_YIQ),
+        ColorSpace::Xyz => times(rgb, &RGB_TO_XYZ),
+        ColorSpace::XyY => xyz_to_xyy(times(rgb, &RGB_TO_XYZ)),
+        ColorSpace::Srgb => rgb.map(linear_to_srgb),
+    }
+}
+
+/// One channel of sRGB in linear light (IEC 61966-2-1).
+#[inline(always)]
+pub fn srgb_to_linear(x: f32) -> f32 {
+    let curve = pow_positive((x + 0.055) * (1.0 / 1.055), 2.4);
+    if x > 0.04045 { curve } else { x * (1.0 / 12.92) }
+}
+
+/// One linear channel with the transfer curve of sRGB (IEC 61966-2-1).
+#[inline(always)]
+pub fn linear_to_srgb(x: f32) -> f32 {
+    let curve = 1.055 * pow_positive(x, 1.0 / 2.4) - 0.055;
+    if x > 0.003_130_8 { curve } else { 12.92 * x }
+}
+
+/// Hue, saturation, value to RGB (Smith 1978); hues repeat after 1.
+pub fn hsv_to_rgb([h, s, v]: [f32; 3]) -> [f32; 3] {
+    if s < 0.0001 {
+        return [v; 3];
+    }
+    let sixth = 6.0 * (h - floor(h));
+    let sector = floor(sixth);
+    let f = sixth - sector;
+    let (p, q, t) = (v * (1.0 - s), v * (1.0 - s * f), v * (1.0 - s * (1.0 - f)));
+    match sector as i32 {
+        0 => [v, t, p],
+        1 => [q, v, p],
+        2 => [p, v, t],
+        3 => [p, q, v],
+        4 => [t, p, v],
+        _ => [v, p, q],
+    }
+}
+
+/// RGB to hue, saturation, value (Smith 1978); greys have hue 0.
+pub fn rgb_to_hsv([r, g, b]: [f32; 3]) -> [f32; 3] {
+    let least = min(r, min(g, b));
+    let value = max(r, max(g, b));
+    let chroma = value - least;
+    let saturation = if value > 0.0 { chroma / value } else { 0.0 };
+    if saturation <= 0.0 {
+        return [0.0, saturation, value];
+    }
+    let (start, x, y) = if r >= value {
+        (0.0, g, b)
+    } else if g >= value {
+        (1.0 / 3.0, b, r)
+    } else {
+        (2.0 / 3.0, r, g)
+    };
+    let hue = start + (x - y) / (6.0 * chroma);
+    [if hue < 0.0 { hue + 1.0 } else { hue }, saturation, value]
+}
+
+/// Hue, saturation, lightness to RGB, by way of value.
+pub fn hsl_to_rgb([h, s, l]: [f32; 3]) -> [f32; 3] {
+    let value = if l <= 0.5 { l * (1.0 + s) } else { l * (1.0 - s) + s };
+    if value <= 0.0 {
+        return [0.0; 3];
+    }
+    let least = 2.0 * l - value;
+    hsv_to_rgb([h, (value - least) / value, value])
+}
+
+/// RGB to hue, saturation, lightness; greys have hue and saturation 0.
+pub fn rgb_to_hsl(rgb: [f32; 3]) -> [f32; 3] {
+    let least = min(rgb[0], min(rgb[1], rgb[2]));
+    let [hue, _, value] = rgb_to_hsv(rgb);
+    let lightness = (least + value) / 2.0;
+    let range = if lightness <= 0.5 { value + least } else { 2.0 - value - least };
+    let saturation = if least == value { 0.0 } else { (value - least) / range };
+    [hue, saturation, lightness]
+}
+
+/// XYZ to chromaticity and luminance; black has chromaticity (0, 0).
+pub fn xyz_to_xyy([x, y, z]: [f32; 3]) -> [f32; 3] {
+    let sum = x + y + z;
+    let scale = if sum >= 1e-6 { 1.0 / sum } else { 0.0 };
+    [x * scale, y * scale, y]
+}
+
+/// Chromaticity and luminance to XYZ; a chromaticity with y = 0 has only its luminance.
+pub fn xyy_to_xyz([x, y, luminance]: [f32; 3]) -> [f32; 3] {
+    let scale = if y > 1e-6 { luminance / y } else { 0.0 };
+    [scale * x, luminance, scale * (1.0 - x - y)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPACES: [&str; 7] = ["rgb", "hsv", "hsl", "YIQ", "XYZ", "xyY", "sRGB"];
+
+    #[track_caller]
+    fn near(got: [f32; 3], want: [f32; 3], tolerance: f32) {
+        for k in 0..3 {
+            assert!((got[k] - want[k]).abs() <= tolerance * want[k].abs().max(1.0), "{got:?} but {want:?}");
+        }
+    }
+
+    #[test]
+    fn spaces_go_there_and_back() {
+        for c in [[0.2, 0.5, 0.7], [0.9, 0.1, 0.3], [0.4, 0.4, 0.4], [0.02, 0.9, 0.6], [0.001, 0.002, 0.003]] {
+            for name in SPACES {
+                let space = ColorSpace::from_name(name).expect("all seven are known");
+                let back = transformc(space, ColorSpace::Rgb, transformc(ColorSpace::Rgb, space, c));
+                // The inverse of YIQ has four digits.
+                near(back, c, if name == "YIQ" { 1e-3 } else { 2e-6 });
+            }
+        }
+        assert_eq!(ColorSpace::from_name("ACEScg"), None);
+    }
+
+    #[test]
+    fn known_colours() {
+        near(hsv_to_rgb([1.0 / 3.0, 1.0, 1.0]), [0.0, 1.0, 0.0], 1e-6);
+        near(rgb_to_hsv([0.0, 0.0, 0.5]), [2.0 / 3.0, 1.0, 0.5], 1e-6);
+        near(rgb_to_hsl([1.0, 0.0, 0.0]), [0.0, 1.0, 0.5], 1e-6);
+        near(transformc(ColorSpace::Rgb, ColorSpace::XyY, [1.0; 3]), [0.3127, 0.3291, 1.0], 1e-5);
+        near([srgb_to_linear(0.5); 3], [0.214_041_14; 3], 1e-6);
+        near([linear_to_srgb(0.214_041_14); 3], [0.5; 3], 1e-6);
+        assert!((luminance([1.0; 3]) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn black_bodies_glow() {
+        assert_eq!(blackbody(300.0), [1e-6, 0.0, 0.0]);
+        for kelvin in [1000.0, 2700.0, 5000.0, 6504.0, 11_999.0] {
+            near(blackbody(kelvin), blackbody_by_integral(kelvin), 1e-3);
+        }
+        let white = blackbody(6504.0);
+        assert!((white[0] / white[2] - 1.0).abs() < 0.05, "6504 K is nearly the white of Rec. 709: {white:?}");
+        for kelvin in [f32::NAN, f32::INFINITY, -1.0, 800.0, 12_000.0, 1e30] {
+            let _ = blackbody(kelvin);
+        }
+    }
+
+    #[test]
+    fn wavelengths_have_their_colours() {
+        let [red, green, blue] = [650.0, 530.0, 450.0].map(wavelength_color);
+        assert!(red[0] > 5.0 * red[1] && green[1] > green[0] && blue[2] > blue[0]);
+        for nanometres in [379.0, 100.0, 780.0, f32::NAN, f32::INFINITY] {
+            assert!(wavelength_color(nanometres)[0] < 1e-3);
+        }
+    }
+}

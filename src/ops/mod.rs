@@ -20,6 +20,7 @@ pub mod color;
 pub mod format;
 pub mod fresnel;
 pub mod hash;
+mod matching;
 pub mod matrix;
 pub mod pattern;
 pub mod spline;

@@ -48,11 +48,13 @@ impl Basis {
             Basis::CatmullRom => {
                 [[-0.5, 1.5, -1.5, 0.5], [1.0, -2.5, 2.0, -0.5], [-0.5, 0.0, 0.5, 0.0], [0.0, 1.0, 0.0, 0.0]]
             }
-            Basis::Bezier => [[-1.0, 3.0, -3.0, 1.0], [3.0, -6.0, 3.0, 0.0], [-3.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]],
-            Basis::BSpline => {
-                [[-S, 0.5, -0.5, S], [0.5, -1.0, 0.5, 0.0], [-0.5, 0.0, 0.5, 0.0], [S, 4.0 * S, S, 0.0]]
+            Basis::Bezier => {
+                [[-1.0, 3.0, -3.0, 1.0], [3.0, -6.0, 3.0, 0.0], [-3.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
             }
-            Basis::Hermite => [[2.0, 1.0, -2.0, 1.0], [-3.0, -2.0, 3.0, -1.0], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]],
+            Basis::BSpline => [[-S, 0.5, -0.5, S], [0.5, -1.0, 0.5, 0.0], [-0.5, 0.0, 0.5, 0.0], [S, 4.0 * S, S, 0.0]],
+            Basis::Hermite => {
+                [[2.0, 1.0, -2.0, 1.0], [-3.0, -2.0, 3.0, -1.0], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
+            }
             Basis::Linear => [[0.0; 4], [0.0; 4], [0.0, -1.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
             Basis::Constant => [[0.0; 4], [0.0; 4], [0.0; 4], [0.0, 1.0, 0.0, 0.0]],
         }
@@ -112,7 +114,8 @@ pub fn spline_slope(basis: Basis, x: f32, count: usize, knot: impl Fn(usize) -> 
 /// The `x` at which the spline through monotonic knots has the value `y`.
 ///
 /// Source: OSL; within a segment, false position and then bisection. Domain: monotonic knots. Gives: [0, 1], to 1e-6.
-/// Degenerate cases: an end of the interval for values beyond the knots; without knots 0.
+/// Degenerate cases: an end of the interval for values beyond the knots; without knots 0. Departs from source: the Illinois
+/// rule (Dowell and Jarratt 1971) keeps false position from stalling, where OSL's search ends far from the place.
 pub fn splineinverse(basis: Basis, y: f32, knots: &[f32]) -> f32 {
     let count = knots.len();
     if count < 4 {
@@ -155,20 +158,25 @@ fn solve(value: impl Fn(f32) -> f32, y: f32, mut low: f32, mut high: f32) -> (bo
         return (true, low);
     }
     let mut x = low;
+    let mut moved_low = None;
     for step in 0..STEPS {
         let t = (y - at_low) / (at_high - at_low);
-        // False position can stall at one end; the last quarter of the steps halves the interval.
+        // Should false position stall all the same, the last quarter of the steps halves the interval.
         let t = if step < STEPS * 3 / 4 && t > 0.0 && t < 1.0 { t } else { 0.5 };
         x = low * (1.0 - t) + high * t;
         let v = value(x);
-        if (v < y) == increasing {
-            (low, at_low) = (x, v);
-        } else {
-            (high, at_high) = (x, v);
-        }
         if (high - low).abs() < CLOSE || (v - y).abs() < CLOSE {
             break;
         }
+        let move_low = (v < y) == increasing;
+        // The end that stays for the second time pulls with half its weight: the Illinois rule.
+        let weight = if moved_low == Some(move_low) { 0.5 } else { 1.0 };
+        if move_low {
+            (low, at_low, at_high) = (x, v, y + weight * (at_high - y));
+        } else {
+            (high, at_high, at_low) = (x, v, y + weight * (at_low - y));
+        }
+        moved_low = Some(move_low);
     }
     (true, x)
 }
