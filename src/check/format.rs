@@ -2,7 +2,9 @@
 
 use super::context::Checker;
 use super::typed::{Argument, ExprKind};
-use velour_grammar::Span;
+use crate::lang::types::{Base, Element};
+use crate::ops::format::{FormatKind, check_format};
+use velour_grammar::{Diagnostic, Span};
 
 impl Checker<'_> {
     /// Reports a format string that does not fit the arguments of a call.
@@ -13,10 +15,28 @@ impl Checker<'_> {
             _ => return,
         };
         let Some(Argument::In(format)) = args.get(at) else { return };
-        let ExprKind::String(_) = &format.kind else {
+        let ExprKind::String(text) = &format.kind else {
             self.error("E0511", format.span, "the format is a literal string");
             return;
         };
-        let _ = span;
+        let kinds: Option<Vec<FormatKind>> = args[at + 1..].iter().map(format_kind).collect();
+        let Some(kinds) = kinds else {
+            self.error("E0511", span, "a struct cannot be formatted; name its fields");
+            return;
+        };
+        if let Err(problem) = check_format(text, &kinds, at + 2) {
+            let diagnostic = Diagnostic::error("E0511", span, format!("`{name}` {problem}"));
+            self.report(diagnostic.help("%d writes ints, %g floats, colors and matrices, %s strings and closures"));
+        }
+    }
+}
+
+fn format_kind(arg: &Argument) -> Option<FormatKind> {
+    match &arg.ty().element {
+        Element::Base(Base::Int) => Some(FormatKind::Int),
+        Element::Base(Base::String) => Some(FormatKind::Str),
+        Element::Base(Base::Closure) => Some(FormatKind::Closure),
+        Element::Base(Base::Void) | Element::Struct(_) => None,
+        Element::Base(_) => Some(FormatKind::Float),
     }
 }
