@@ -36,7 +36,11 @@ impl Context {
                     .help("write `closure color`"),
             );
         }
-        TypeSpec { closure: true, base: TypeName::Color, span }
+        TypeSpec {
+            closure: true,
+            base: TypeName::Color,
+            span,
+        }
     }
 }
 
@@ -52,17 +56,26 @@ pub struct Declarator {
 
 /// The span from one token to another.
 pub fn span(first: u32, last: u32) -> Span {
-    Span { first, last: last.max(first) }
+    Span {
+        first,
+        last: last.max(first),
+    }
 }
 
 /// An expression from one token to another.
 pub fn expr(kind: ExprKind, first: u32, last: u32) -> Expr {
-    Expr { kind, span: span(first, last) }
+    Expr {
+        kind,
+        span: span(first, last),
+    }
 }
 
 /// A statement from one token to another.
 pub fn stmt(kind: StmtKind, first: u32, last: u32) -> Stmt {
-    Stmt { kind, span: span(first, last) }
+    Stmt {
+        kind,
+        span: span(first, last),
+    }
 }
 
 /// A function once its body is known.
@@ -79,30 +92,53 @@ pub fn joined(before: Option<Vec<Metadata>>, after: Option<Vec<Metadata>>) -> Ve
 
 /// A declaration statement.
 pub fn declare(ty: TypeSpec, names: Vec<Declarator>) -> StmtKind {
-    let declared = |d: Declarator| VarDecl { ty: ty.clone(), name: d.name, array: d.array, init: d.init };
+    let declared = |d: Declarator| VarDecl {
+        ty: ty.clone(),
+        name: d.name,
+        array: d.array,
+        init: d.init,
+    };
     StmtKind::Declare(names.into_iter().map(declared).collect())
 }
 
 /// An `if`.
 pub fn branch(condition: Expr, then: Stmt, otherwise: Option<Stmt>) -> StmtKind {
-    StmtKind::If { condition, then: Box::new(then), otherwise: otherwise.map(Box::new) }
+    StmtKind::If {
+        condition,
+        then: Box::new(then),
+        otherwise: otherwise.map(Box::new),
+    }
 }
 
 /// A `for`.
-pub fn for_loop((init, condition, step): (Stmt, Option<Expr>, Option<Expr>), body: Stmt) -> StmtKind {
-    StmtKind::For { init: Box::new(init), condition, step, body: Box::new(body) }
+pub fn for_loop(
+    (init, condition, step): (Stmt, Option<Expr>, Option<Expr>),
+    body: Stmt,
+) -> StmtKind {
+    StmtKind::For {
+        init: Box::new(init),
+        condition,
+        step,
+        body: Box::new(body),
+    }
 }
 
 /// `a op b`
 pub fn binary(op: BinaryOp, a: Expr, b: Expr) -> Expr {
     let span = a.span.to(b.span);
-    Expr { kind: ExprKind::Binary(op, Box::new(a), Box::new(b)), span }
+    Expr {
+        kind: ExprKind::Binary(op, Box::new(a), Box::new(b)),
+        span,
+    }
 }
 
 /// `a = b` and its kin.
 pub fn assign(op: Option<BinaryOp>, target: Expr, value: Expr) -> Expr {
     let span = target.span.to(value.span);
-    Expr { kind: ExprKind::Assign(op, Box::new(target), Box::new(value)), span }
+    Expr {
+        kind: ExprKind::Assign(op, Box::new(target), Box::new(value)),
+        span,
+    }
 }
 
 /// `op a`
@@ -120,19 +156,38 @@ pub fn cast(ty: TypeSpec, operand: Expr, first: u32) -> Expr {
 /// `++a` and `--a`
 pub fn step_before(increment: bool, target: Expr, first: u32) -> Expr {
     let last = target.span.last;
-    expr(ExprKind::Step { increment, prefix: true, target: Box::new(target) }, first, last)
+    expr(
+        ExprKind::Step {
+            increment,
+            prefix: true,
+            target: Box::new(target),
+        },
+        first,
+        last,
+    )
 }
 
 /// `a++` and `a--`
 pub fn step_after(increment: bool, target: Expr, last: u32) -> Expr {
     let first = target.span.first;
-    expr(ExprKind::Step { increment, prefix: false, target: Box::new(target) }, first, last)
+    expr(
+        ExprKind::Step {
+            increment,
+            prefix: false,
+            target: Box::new(target),
+        },
+        first,
+        last,
+    )
 }
 
 /// `c ? a : b`
 pub fn ternary(condition: Expr, a: Expr, b: Expr) -> Expr {
     let span = condition.span.to(b.span);
-    Expr { kind: ExprKind::Ternary(Box::new(condition), Box::new(a), Box::new(b)), span }
+    Expr {
+        kind: ExprKind::Ternary(Box::new(condition), Box::new(a), Box::new(b)),
+        span,
+    }
 }
 
 /// `a, b, c`
@@ -141,19 +196,29 @@ pub fn comma(first: Expr, rest: Vec<Expr>) -> Expr {
     let mut all = Vec::with_capacity(rest.len() + 1);
     all.push(first);
     all.extend(rest);
-    Expr { kind: ExprKind::Comma(all), span }
+    Expr {
+        kind: ExprKind::Comma(all),
+        span,
+    }
 }
 
 /// `a[i]`
 pub fn index(base: Expr, index: Expr, last: u32) -> Expr {
     let first = base.span.first;
-    expr(ExprKind::Index(Box::new(base), Box::new(index)), first, last)
+    expr(
+        ExprKind::Index(Box::new(base), Box::new(index)),
+        first,
+        last,
+    )
 }
 
 /// `a.name`
 pub fn field(base: Expr, name: Ident) -> Expr {
     let span = base.span.to(name.span);
-    Expr { kind: ExprKind::Field(Box::new(base), name), span }
+    Expr {
+        kind: ExprKind::Field(Box::new(base), name),
+        span,
+    }
 }
 
 /// `(a)`: no node, but the span takes in the parentheses.
