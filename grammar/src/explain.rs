@@ -1,5 +1,6 @@
 //! Parse errors in human words: what was expected, what was found, what to do.
 
+use crate::ast::Item;
 use crate::brackets::Unclosed;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Sources;
@@ -172,7 +173,9 @@ impl Failure {
 
     /// The semicolon is missing when one would do and the next line, or something that starts a statement, follows.
     fn missing_semicolon(&self, sources: &Sources) -> Option<Diagnostic> {
-        if !(self.has(";") || self.has(";0")) {
+        // Where a statement or an item may start, a semicolon would do but is not what is missing.
+        let starting = self.has("return") && !self.has("*") || self.has("kind");
+        if starting || !(self.has(";") || self.has(";0")) {
             return None;
         }
         let previous = previous(self.span.first, sources)?;
@@ -218,11 +221,7 @@ impl Failure {
         let text = sources.text(span);
         let message = format!("missing `;` after `{}`", shortened(&text));
         let mut message = Diagnostic::error("E0302", span, message).label("add `;` here");
-        message = message.help(if text == "}" {
-            "a struct declaration ends with `;`"
-        } else {
-            "every statement ends with `;`"
-        });
+        message = message.help("every statement ends with `;`");
         Some(message)
     }
 
@@ -237,10 +236,12 @@ impl Failure {
             Sym::BraceClose | Sym::ItemClose => Sym::BraceOpen,
             _ => return None,
         };
+        // A brace inside a function that ends the whole item closes more than it should.
+        let too_much = found == Sym::ItemClose && self.has("}");
         let inner = unclosed
             .iter()
             .rev()
-            .find(|u| u.span.first < self.span.first && u.bracket != opener);
+            .find(|u| u.span.first < self.span.first && (u.bracket != opener || too_much));
         if let Some(open) = inner {
             return Some(
                 never_closed(*open).also(self.span, format!("found `{}` instead", found.text())),
@@ -281,15 +282,18 @@ impl Failure {
         if expression || statement || self.has("kind") {
             return list.join(" or ");
         }
+        let operators = self.has("*");
         for terminal in [
-            ";", ";0", ")", "]", "}", "}0", ":", "(", "{", "=", "[[", ",", "while",
+            ";", ";0", ")", "]", "}", "}0", ":", "(", "{", "=", ",", "[[", "while",
         ] {
             let shown = format!("`{}`", terminal.trim_end_matches('0'));
-            if self.has(terminal) && list.len() < 3 && !list.contains(&shown) {
+            // Among operators `=` and `(` are possible but hardly ever what was forgotten.
+            let unlikely = operators && matches!(terminal, "=" | "(" | "[[");
+            if self.has(terminal) && !unlikely && list.len() < 3 && !list.contains(&shown) {
                 list.push(shown);
             }
         }
-        if self.has("*") && list.len() < 3 {
+        if operators && list.len() < 3 {
             list.push("an operator".into());
         }
         match list.split_last() {
@@ -350,6 +354,27 @@ fn never_closed(open: Unclosed) -> Diagnostic {
     Diagnostic::error("E0303", open.span, format!("this `{text}` is never closed"))
         .label("opened here")
         .help(format!("add the missing `{closer}`"))
+}
+
+/// Reports structs without the semicolon, which the grammar lets pass so that what follows is read.
+pub fn check_structs(items: &[Item], sources: &Sources, diagnostics: &mut Diagnostics) {
+    for item in items {
+        let Item::Struct(decl) = item else { continue };
+        let next = (decl.span.last + 1..)
+            .map_while(|i| sources.token(i))
+            .find(|t| !t.aside);
+        if next.is_none_or(|t| sources.spelling(t.place) != ";") {
+            let span = Span {
+                first: decl.span.last,
+                last: decl.span.last,
+            };
+            diagnostics.push(
+                Diagnostic::error("E0302", span, "missing `;` after `}`")
+                    .label("add `;` here")
+                    .help("a struct declaration ends with `;`"),
+            );
+        }
+    }
 }
 
 /// The token of the program before another one.

@@ -76,6 +76,13 @@ pub fn parse(name: &str, text: &str, options: &Options) -> Parsed {
     let done = preprocessor::run(name, text, options);
     let sources = done.table.finish();
     let mut diagnostics = done.diagnostics;
+    if done.stopped {
+        return Parsed {
+            file: ast::File::default(),
+            sources,
+            diagnostics,
+        };
+    }
     let mut tokens = lexer::lex(&done.tokens, &sources, &mut diagnostics);
     if let Some(message) = brackets::too_deep(&tokens) {
         diagnostics.push(message);
@@ -93,6 +100,8 @@ pub fn parse(name: &str, text: &str, options: &Options) -> Parsed {
     }
     diagnostics.append(context.diagnostics);
     explain::explain(&context.failures, &unclosed, &sources, &mut diagnostics);
+    explain::check_structs(&context.items, &sources, &mut diagnostics);
+    diagnostics.list.sort_by_key(|d| d.span.first);
     Parsed {
         file: ast::File {
             items: context.items,

@@ -20,6 +20,9 @@ pub enum Format {
 /// More notes than this about macros and includes say no more.
 const MAX_NOTES: usize = 6;
 
+/// Lines of more bytes than this are shown in part.
+const LONG_LINE: usize = 240;
+
 impl Sources {
     /// Writes messages as text, in order. Colours are ANSI escapes.
     pub fn render(&self, diagnostics: &Diagnostics, format: Format, color: bool) -> String {
@@ -69,14 +72,32 @@ impl Sources {
         message
             .notes
             .extend(diagnostic.help.iter().map(|help| format!("help: {help}")));
+        if let Some(place) = self.place(diagnostic.span)
+            && let Some(excerpt) = Excerpt::of_long_line(self, place)
+        {
+            let range = excerpt.range.clone();
+            message.labels = vec![shown::Label::primary(0, range).with_message(&diagnostic.label)];
+            return self.emit(diagnostic, &excerpt, &message, color, out);
+        }
+        self.emit(diagnostic, self, &message, color, out);
+    }
+
+    fn emit<'a, F: Files<'a, FileId = usize>>(
+        &self,
+        diagnostic: &Diagnostic,
+        files: &'a F,
+        message: &shown::Diagnostic<usize>,
+        color: bool,
+        out: &mut String,
+    ) {
         let config = Config::default();
         // Writing to memory fails only if a place lies outside of its file; then the short form still says it.
         let result = if color {
             let mut buffer = termcolor::Ansi::new(Vec::new());
-            let result = term::emit_to_write_style(&mut buffer, &config, self, &message);
+            let result = term::emit_to_write_style(&mut buffer, &config, files, message);
             result.map(|()| String::from_utf8_lossy(&buffer.into_inner()).into_owned())
         } else {
-            term::emit_into_string(&config, self, &message)
+            term::emit_into_string(&config, files, message)
         };
         match result {
             Ok(text) => out.push_str(&text),
@@ -141,6 +162,72 @@ impl Sources {
             }
         }
         notes
+    }
+}
+
+/// A window on a line that is too long to show whole.
+struct Excerpt {
+    name: String,
+    text: String,
+    /// What the message is about, within the text.
+    range: Range<usize>,
+    line: usize,
+    /// How many characters of the line stand before the window.
+    skipped: usize,
+}
+
+impl Excerpt {
+    /// The window around a place, if its line is long.
+    fn of_long_line(sources: &Sources, place: Place) -> Option<Excerpt> {
+        let file = &sources.table.files[place.file as usize];
+        let line = file.line(place.start);
+        let whole = file.line_range(line)?;
+        if whole.len() <= LONG_LINE {
+            return None;
+        }
+        let text = file.text.get(whole.clone())?.trim_end_matches(['\n', '\r']);
+        let at = (place.start as usize - whole.start).min(text.len());
+        let end = (place.end as usize - whole.start).min(text.len()).max(at);
+        let start = text.floor_char_boundary(at.saturating_sub(40));
+        let stop = text.ceil_char_boundary((at + 60).min(text.len()));
+        Some(Excerpt {
+            name: file.name.to_string(),
+            range: at - start..end.min(stop) - start,
+            skipped: text[..start].chars().count(),
+            text: text[start..stop].to_string(),
+            line,
+        })
+    }
+}
+
+impl<'a> Files<'a> for Excerpt {
+    type FileId = usize;
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&'a self, _: usize) -> Result<&'a str, Error> {
+        Ok(&self.name)
+    }
+
+    fn source(&'a self, _: usize) -> Result<&'a str, Error> {
+        Ok(&self.text)
+    }
+
+    fn line_index(&'a self, _: usize, _: usize) -> Result<usize, Error> {
+        Ok(0)
+    }
+
+    fn line_number(&'a self, _: usize, _: usize) -> Result<usize, Error> {
+        Ok(self.line + 1)
+    }
+
+    fn column_number(&'a self, _: usize, _: usize, byte: usize) -> Result<usize, Error> {
+        let before = self.text.get(..byte).map_or(0, |t| t.chars().count());
+        Ok(self.skipped + before + 1)
+    }
+
+    fn line_range(&'a self, _: usize, _: usize) -> Result<Range<usize>, Error> {
+        Ok(0..self.text.len())
     }
 }
 

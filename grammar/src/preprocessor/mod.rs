@@ -37,6 +37,8 @@ pub(crate) struct Preprocessed {
     pub table: SourceTable,
     /// What was wrong.
     pub diagnostics: Diagnostics,
+    /// A limit ended the run: the tokens are not all there are.
+    pub stopped: bool,
 }
 
 /// A file that is being read.
@@ -135,6 +137,7 @@ pub(crate) fn run(name: &str, text: &str, options: &Options) -> Preprocessed {
         tokens,
         table: state.table,
         diagnostics: state.diagnostics,
+        stopped: state.stopped,
     }
 }
 
