@@ -339,6 +339,7 @@ impl Failure {
             }
             _ if self.has("int literal") => "a value is missing before it, or something here is too much".into(),
             _ if self.has("*") => "is an operator or a bracket missing before it?".into(),
+            _ if self.has("name") => "a declaration is written `type name`".into(),
             _ => "look at what stands just before it".into(),
         }
     }

@@ -16,23 +16,25 @@ pub(crate) fn to_text(tokens: &[(PpToken, u32)], table: &SourceTable) -> String 
         let file = &table.files[place.file as usize];
         let line = file.line(place.start);
         match at {
-            Some((f, l)) if f == place.file && l == line => {
+            // Only what starts a line there starts one here: arguments stay on the line of their macro call.
+            Some(_) if !token.line_start => {
                 if token.space || glued(&out, table.text(token.place)) {
                     out.push(' ');
                 }
             }
             Some((f, l)) if f == place.file && line > l && line - l <= MAX_EMPTY_LINES => {
                 out.push_str(&"\n".repeat(line - l));
+                at = Some((place.file, line));
             }
             _ => {
                 if at.is_some() {
                     out.push('\n');
                 }
                 let _ = writeln!(out, "#line {} {:?}", line + 1, &*file.name);
+                at = Some((place.file, line));
             }
         }
         out.push_str(table.text(token.place));
-        at = Some((place.file, line));
     }
     if at.is_some() {
         out.push('\n');
