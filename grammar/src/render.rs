@@ -188,16 +188,24 @@ impl Excerpt {
         let text = file.text.get(whole.clone())?.trim_end_matches(['\n', '\r']);
         let at = (place.start as usize - whole.start).min(text.len());
         let end = (place.end as usize - whole.start).min(text.len()).max(at);
-        let start = text.floor_char_boundary(at.saturating_sub(40));
-        let stop = text.ceil_char_boundary((at + 60).min(text.len()));
+        let start = boundary(text, at.saturating_sub(40));
+        let stop = boundary(text, (at + 60).min(text.len()));
         Some(Excerpt {
             name: file.name.to_string(),
-            range: at - start..end.min(stop) - start,
+            range: at - start..end.min(stop).max(at) - start,
             skipped: text[..start].chars().count(),
             text: text[start..stop].to_string(),
             line,
         })
     }
+}
+
+/// The last place at or before a byte where a character starts.
+fn boundary(text: &str, byte: usize) -> usize {
+    (0..=byte)
+        .rev()
+        .find(|b| text.is_char_boundary(*b))
+        .unwrap_or(0)
 }
 
 impl<'a> Files<'a> for Excerpt {

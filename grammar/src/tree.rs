@@ -17,11 +17,6 @@ pub struct Context {
 }
 
 impl Context {
-    /// Takes an item.
-    pub fn item(&mut self, item: Option<Item>) {
-        self.items.extend(item);
-    }
-
     /// Notes a parse error whose text has been skipped.
     pub fn recovered(&mut self, recovery: Recovery<'_>) {
         self.failures.push(Failure::from(recovery));
@@ -62,25 +57,53 @@ pub fn span(first: u32, last: u32) -> Span {
     }
 }
 
+/// What stands between the parentheses of a `for`.
+pub struct ForHead {
+    /// The first part.
+    pub init: Box<Stmt>,
+    /// The second part.
+    pub condition: Option<Box<Expr>>,
+    /// The third part.
+    pub step: Option<Box<Expr>>,
+}
+
+/// The elements without their boxes.
+pub fn unboxed<T>(list: Vec<Box<T>>) -> Vec<T> {
+    list.into_iter().map(|element| *element).collect()
+}
+
 /// An expression from one token to another.
-pub fn expr(kind: ExprKind, first: u32, last: u32) -> Expr {
-    Expr {
+pub fn expr(kind: ExprKind, first: u32, last: u32) -> Box<Expr> {
+    Box::new(Expr {
         kind,
         span: span(first, last),
-    }
+    })
 }
 
 /// A statement from one token to another.
-pub fn stmt(kind: StmtKind, first: u32, last: u32) -> Stmt {
-    Stmt {
+pub fn stmt(kind: StmtKind, first: u32, last: u32) -> Box<Stmt> {
+    Box::new(Stmt {
         kind,
         span: span(first, last),
-    }
+    })
 }
 
 /// A function once its body is known.
-pub fn function(head: FunctionDecl, body: Option<Vec<Stmt>>) -> FunctionDecl {
-    FunctionDecl { body, ..head }
+pub fn function(mut head: Box<FunctionDecl>, body: Option<Vec<Stmt>>) -> FunctionDecl {
+    head.body = body;
+    *head
+}
+
+/// A formal parameter.
+pub fn param(output: bool, ty: TypeSpec, d: Declarator, metadata: Vec<Metadata>) -> Box<Param> {
+    Box::new(Param {
+        output,
+        ty,
+        name: d.name,
+        array: d.array,
+        default: d.init,
+        metadata,
+    })
 }
 
 /// Metadata before and after the formals, as one list.
@@ -91,76 +114,81 @@ pub fn joined(before: Option<Vec<Metadata>>, after: Option<Vec<Metadata>>) -> Ve
 }
 
 /// A declaration statement.
-pub fn declare(ty: TypeSpec, names: Vec<Declarator>) -> StmtKind {
-    let declared = |d: Declarator| VarDecl {
-        ty: ty.clone(),
-        name: d.name,
-        array: d.array,
-        init: d.init,
+pub fn declare(ty: TypeSpec, names: Vec<Box<Declarator>>) -> StmtKind {
+    let declared = |d: Box<Declarator>| {
+        let d = *d;
+        VarDecl {
+            ty: ty.clone(),
+            name: d.name,
+            array: d.array,
+            init: d.init,
+        }
     };
     StmtKind::Declare(names.into_iter().map(declared).collect())
 }
 
 /// An `if`.
-pub fn branch(condition: Expr, then: Stmt, otherwise: Option<Stmt>) -> StmtKind {
+pub fn branch(condition: Box<Expr>, then: Box<Stmt>, otherwise: Option<Box<Stmt>>) -> StmtKind {
     StmtKind::If {
-        condition,
-        then: Box::new(then),
-        otherwise: otherwise.map(Box::new),
+        condition: *condition,
+        then,
+        otherwise,
     }
 }
 
 /// A `for`.
-pub fn for_loop(
-    (init, condition, step): (Stmt, Option<Expr>, Option<Expr>),
-    body: Stmt,
-) -> StmtKind {
-    StmtKind::For {
-        init: Box::new(init),
+pub fn for_loop(head: Box<ForHead>, body: Box<Stmt>) -> StmtKind {
+    let ForHead {
+        init,
         condition,
         step,
-        body: Box::new(body),
+    } = *head;
+    StmtKind::For {
+        init,
+        condition: condition.map(|e| *e),
+        step: step.map(|e| *e),
+        body,
     }
 }
 
 /// `a op b`
-pub fn binary(op: BinaryOp, a: Expr, b: Expr) -> Expr {
+pub fn binary(op: BinaryOp, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
     let span = a.span.to(b.span);
-    Expr {
-        kind: ExprKind::Binary(op, Box::new(a), Box::new(b)),
+    Box::new(Expr {
+        kind: ExprKind::Binary(op, a, b),
         span,
-    }
+    })
 }
 
 /// `a = b` and its kin.
-pub fn assign(op: Option<BinaryOp>, target: Expr, value: Expr) -> Expr {
+pub fn assign(op: Option<BinaryOp>, target: Box<Expr>, value: Box<Expr>) -> Box<Expr> {
     let span = target.span.to(value.span);
-    Expr {
-        kind: ExprKind::Assign(op, Box::new(target), Box::new(value)),
+    Box::new(Expr {
+        kind: ExprKind::Assign(op, target, value),
         span,
-    }
+    })
 }
 
 /// `op a`
-pub fn unary(op: UnaryOp, operand: Expr, first: u32) -> Expr {
+pub fn unary(op: UnaryOp, operand: Box<Expr>, first: u32) -> Box<Expr> {
     let last = operand.span.last;
-    expr(ExprKind::Unary(op, Box::new(operand)), first, last)
+    expr(ExprKind::Unary(op, operand), first, last)
 }
 
 /// `(type) a`
-pub fn cast(ty: TypeSpec, operand: Expr, first: u32) -> Expr {
+pub fn cast(ty: TypeSpec, operand: Box<Expr>, first: u32) -> Box<Expr> {
     let last = operand.span.last;
-    expr(ExprKind::Cast(ty, Box::new(operand)), first, last)
+    expr(ExprKind::Cast(ty, operand), first, last)
 }
 
 /// `++a` and `--a`
-pub fn step_before(increment: bool, target: Expr, first: u32) -> Expr {
+pub fn step_before(increment: bool, target: Box<Expr>, first: u32) -> Box<Expr> {
     let last = target.span.last;
     expr(
         ExprKind::Step {
             increment,
             prefix: true,
-            target: Box::new(target),
+            target,
         },
         first,
         last,
@@ -168,13 +196,13 @@ pub fn step_before(increment: bool, target: Expr, first: u32) -> Expr {
 }
 
 /// `a++` and `a--`
-pub fn step_after(increment: bool, target: Expr, last: u32) -> Expr {
+pub fn step_after(increment: bool, target: Box<Expr>, last: u32) -> Box<Expr> {
     let first = target.span.first;
     expr(
         ExprKind::Step {
             increment,
             prefix: false,
-            target: Box::new(target),
+            target,
         },
         first,
         last,
@@ -182,47 +210,43 @@ pub fn step_after(increment: bool, target: Expr, last: u32) -> Expr {
 }
 
 /// `c ? a : b`
-pub fn ternary(condition: Expr, a: Expr, b: Expr) -> Expr {
+pub fn ternary(condition: Box<Expr>, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
     let span = condition.span.to(b.span);
-    Expr {
-        kind: ExprKind::Ternary(Box::new(condition), Box::new(a), Box::new(b)),
+    Box::new(Expr {
+        kind: ExprKind::Ternary(condition, a, b),
         span,
-    }
+    })
 }
 
 /// `a, b, c`
-pub fn comma(first: Expr, rest: Vec<Expr>) -> Expr {
+pub fn comma(first: Box<Expr>, rest: Vec<Box<Expr>>) -> Box<Expr> {
     let span = rest.iter().fold(first.span, |span, e| span.to(e.span));
     let mut all = Vec::with_capacity(rest.len() + 1);
-    all.push(first);
-    all.extend(rest);
-    Expr {
+    all.push(*first);
+    all.extend(rest.into_iter().map(|e| *e));
+    Box::new(Expr {
         kind: ExprKind::Comma(all),
         span,
-    }
+    })
 }
 
 /// `a[i]`
-pub fn index(base: Expr, index: Expr, last: u32) -> Expr {
+pub fn index(base: Box<Expr>, index: Box<Expr>, last: u32) -> Box<Expr> {
     let first = base.span.first;
-    expr(
-        ExprKind::Index(Box::new(base), Box::new(index)),
-        first,
-        last,
-    )
+    expr(ExprKind::Index(base, index), first, last)
 }
 
 /// `a.name`
-pub fn field(base: Expr, name: Ident) -> Expr {
+pub fn field(base: Box<Expr>, name: Ident) -> Box<Expr> {
     let span = base.span.to(name.span);
-    Expr {
-        kind: ExprKind::Field(Box::new(base), name),
+    Box::new(Expr {
+        kind: ExprKind::Field(base, name),
         span,
-    }
+    })
 }
 
 /// `(a)`: no node, but the span takes in the parentheses.
-pub fn parenthesised(mut inner: Expr, first: u32, last: u32) -> Expr {
+pub fn parenthesised(mut inner: Box<Expr>, first: u32, last: u32) -> Box<Expr> {
     inner.span = span(first, last);
     inner
 }
