@@ -43,7 +43,8 @@ pub fn mark_items(tokens: &mut [Spanned<'_>], sources: &Sources) -> Vec<Unclosed
     })
 }
 
-/// Pairs brackets; a closing brace for which `ends_item` holds closes everything.
+/// Pairs brackets; a closing brace for which `ends_item` holds closes everything. What stays open comes in the order
+/// of the text.
 fn pair(tokens: &mut [Spanned<'_>], ends_item: impl Fn(u32) -> bool) -> Vec<Unclosed> {
     let mut open: Vec<Unclosed> = Vec::new();
     let mut lost = Vec::new();
@@ -85,6 +86,7 @@ fn pair(tokens: &mut [Spanned<'_>], ends_item: impl Fn(u32) -> bool) -> Vec<Uncl
         }
     }
     lost.append(&mut open);
+    lost.sort_by_key(|u| u.span.first);
     lost
 }
 

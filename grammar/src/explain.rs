@@ -7,6 +7,7 @@ use crate::source::Sources;
 use crate::span::Span;
 use crate::token::{Sym, Token};
 use lalrpop_util::{ErrorRecovery, ParseError};
+use std::collections::HashSet;
 
 /// What the parser gives when it has skipped over a mistake.
 pub type Recovery<'s> = ErrorRecovery<u32, Token<'s>, ()>;
@@ -90,6 +91,9 @@ fn kind(token: &Token<'_>) -> Found {
 /// How near to the last mistake another one is taken for its consequence, in tokens.
 const ECHO: u32 = 3;
 
+/// How many syntax errors are shown.
+const MAX_SHOWN: usize = 100;
+
 /// Turns failures into messages. One that follows closely on another, or on a message of the lexer, is its echo and
 /// left out.
 pub fn explain(
@@ -105,16 +109,41 @@ pub fn explain(
         .map(|d| d.span.first)
         .collect();
     let mut quiet_until = None;
+    let mut shown = 0;
+    let mut brackets_seen = HashSet::new();
     for failure in failures {
         let at = failure.span.first;
         let echo = quiet_until.is_some_and(|quiet| at <= quiet)
-            || reported.iter().any(|r| *r <= at && at - *r <= ECHO)
+            || near(&reported, at)
             || failure.found == Found::Broken;
         quiet_until = Some(failure.resumed_after.saturating_add(ECHO));
-        if !echo {
-            diagnostics.push(failure.message(unclosed, sources));
+        if echo {
+            continue;
+        }
+        if shown == MAX_SHOWN {
+            let message = format!("more than {MAX_SHOWN} syntax errors");
+            diagnostics.push(
+                Diagnostic::error("E0305", failure.span, message)
+                    .label("this one and the rest are not shown")
+                    .help("mend the first ones: others may follow from them"),
+            );
+            break;
+        }
+        let message = failure.message(unclosed, sources);
+        // One bracket can upset the parser several times.
+        if message.code != "E0303" || brackets_seen.insert(message.span) {
+            diagnostics.push(message);
+            shown += 1;
         }
     }
+}
+
+/// True when one of the ascending places lies at or shortly before a token.
+fn near(reported: &[u32], at: u32) -> bool {
+    let before = reported.partition_point(|r| *r <= at);
+    before
+        .checked_sub(1)
+        .is_some_and(|i| at - reported[i] <= ECHO)
 }
 
 impl Failure {
@@ -238,10 +267,12 @@ impl Failure {
         };
         // A brace inside a function that ends the whole item closes more than it should.
         let too_much = found == Sym::ItemClose && self.has("}");
-        let inner = unclosed
+        let before = unclosed.partition_point(|u| u.span.first < self.span.first);
+        let inner = unclosed[..before]
             .iter()
             .rev()
-            .find(|u| u.span.first < self.span.first && (u.bracket != opener || too_much));
+            .take(16)
+            .find(|u| u.bracket != opener || too_much);
         if let Some(open) = inner {
             return Some(
                 never_closed(*open).also(self.span, format!("found `{}` instead", found.text())),

@@ -144,12 +144,12 @@ impl<'s> Lexer<'s, '_> {
             Number::Float(value) => Token::Float(value),
             Number::Wrapped(value) => {
                 let negated = matches!(self.out.last(), Some((_, Token::Sym(Sym::Minus), _)));
-                if !(negated && value == i32::MIN) {
+                if !negated {
                     self.diagnostics.push(
                         Diagnostic::warning(
                             "W0201",
                             span,
-                            format!("{text} does not fit in 31 bits"),
+                            format!("{text} is too large for an int"),
                         )
                         .label(format!("becomes {value}"))
                         .help("write it in hexadecimal if the bits are meant, or as a float"),
@@ -159,9 +159,9 @@ impl<'s> Lexer<'s, '_> {
             }
             Number::TooLarge => {
                 self.diagnostics.push(
-                    Diagnostic::error("E0206", span, format!("{text} does not fit in 32 bits"))
-                        .label("too large for an int")
-                        .help("write it as a float, with a decimal point"),
+                    Diagnostic::error("E0206", span, format!("{text} is too large for an int"))
+                        .label("ints go up to 2147483647")
+                        .help("write it as a float, with a decimal point, or in hexadecimal if the bits are meant"),
                 );
                 Token::Int(0)
             }

@@ -5,9 +5,9 @@
 pub enum Number {
     /// An integer that fits.
     Int(i32),
-    /// An integer between 2^31 and 2^32 - 1, wrapped around.
+    /// 2^31 in decimal, which wraps around; behind a minus it is the least integer.
     Wrapped(i32),
-    /// An integer of more than 32 bits.
+    /// An integer that does not fit.
     TooLarge,
     /// A float.
     Float(f32),
@@ -31,10 +31,8 @@ pub fn number(text: &str) -> Number {
     if text.bytes().all(|b| b.is_ascii_digit()) {
         return match text.parse::<u64>() {
             Ok(value) if value <= i32::MAX as u64 => Number::Int(value as i32),
-            Ok(value) => {
-                u32::try_from(value).map_or(Number::TooLarge, |v| Number::Wrapped(v as i32))
-            }
-            Err(_) => Number::TooLarge,
+            Ok(0x8000_0000) => Number::Wrapped(i32::MIN),
+            _ => Number::TooLarge,
         };
     }
     let plain = text

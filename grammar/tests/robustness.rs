@@ -246,6 +246,41 @@ fn too_long_chains_give_one_message() {
 }
 
 #[test]
+fn mistakes_at_great_depth_are_found_soon() {
+    let start = Instant::now();
+    let ends = [") x y z ; ; ;", "] ; a b c d e f ; }", "; a b ; ; c d ; }"];
+    for link in [
+        "- ",
+        "a=",
+        "a?b:",
+        "if (a) ",
+        "while (a) ",
+        "a+",
+        "{",
+        "(",
+        "( ; ",
+        "{(}",
+        "a b;",
+        "@",
+        "if (a) ; else ",
+    ] {
+        for end in ends {
+            let text = format!(
+                "shader s() {{ {}{}",
+                link.repeat(if link.len() > 5 { 900 } else { 20_000 }),
+                end.repeat(50)
+            );
+            parse_all(&text);
+        }
+    }
+    assert!(
+        start.elapsed() < Duration::from_secs(60),
+        "{:?}",
+        start.elapsed()
+    );
+}
+
+#[test]
 fn macro_bombs_end_soon() {
     let mut doubling = String::from("#define A0(x) x x\n#define S0(x) x##x\n");
     for i in 1..60 {
