@@ -1,5 +1,8 @@
 //! What the grammar's actions call to build the tree: each takes the parts and works out the span.
 
+// The grammar hands over boxes, as all large symbols of the parser are boxed.
+#![allow(clippy::boxed_local, clippy::vec_box)]
+
 use crate::ast::*;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::explain::{Failure, Recovery};

@@ -92,18 +92,7 @@ fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
         ExprKind::Float(value) => vec![text(format!("{value:?}"))],
         ExprKind::String(value) => vec![text(quoted(value))],
         ExprKind::Name(name) => vec![text(name)],
-        ExprKind::Unary(op, a) => {
-            // `- -x` is not `--x`.
-            let apart = matches!(
-                a.kind,
-                ExprKind::Unary(..) | ExprKind::Step { prefix: true, .. }
-            );
-            vec![
-                text(op.symbol()),
-                text(if apart { " " } else { "" }),
-                Piece::Expr(a, level::UNARY),
-            ]
-        }
+        ExprKind::Unary(op, a) => prefixed(op.symbol(), a),
         ExprKind::Binary(op, a, b) => {
             let level = binary_strength(*op);
             vec![
@@ -125,20 +114,10 @@ fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
             prefix,
             target,
         } => {
-            let symbol = text(if *increment { "++" } else { "--" });
-            if *prefix {
-                // `++ +x` is not `+++x`.
-                let apart = matches!(
-                    target.kind,
-                    ExprKind::Unary(..) | ExprKind::Step { prefix: true, .. }
-                );
-                vec![
-                    symbol,
-                    text(if apart { " " } else { "" }),
-                    Piece::Expr(target, level::UNARY),
-                ]
-            } else {
-                vec![Piece::Expr(target, level::POSTFIX), symbol]
+            let symbol = if *increment { "++" } else { "--" };
+            match prefix {
+                true => prefixed(symbol, target),
+                false => vec![Piece::Expr(target, level::POSTFIX), text(symbol)],
             }
         }
         ExprKind::Ternary(c, a, b) => vec![
@@ -178,6 +157,20 @@ fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
         ExprKind::InitList(list) => listed("{", list, "}"),
         ExprKind::Error => vec![text("<error>")],
     }
+}
+
+/// An operator in front of an operand, with a space where `- -x` must not become `--x`.
+fn prefixed<'a>(symbol: &'static str, operand: &'a Expr) -> Vec<Piece<'a>> {
+    let apart = matches!(
+        operand.kind,
+        ExprKind::Unary(..) | ExprKind::Step { prefix: true, .. }
+    );
+    let space = if apart { " " } else { "" };
+    vec![
+        text(symbol),
+        text(space),
+        Piece::Expr(operand, level::UNARY),
+    ]
 }
 
 fn listed<'a>(open: &str, list: &'a [Expr], close: &'static str) -> Vec<Piece<'a>> {
