@@ -289,6 +289,18 @@ impl Preprocessor<'_> {
         let mut out: Vec<PpToken> = Vec::with_capacity(body.len());
         let mut i = 0;
         while i < body.len() && !self.stopped {
+            // Most tokens stand for themselves: they need no list of their own.
+            let (here, next) = (body[i], body.get(i + 1));
+            let plain = here.param.is_none() && here.token.kind != Kind::Hash;
+            if plain && next.is_none_or(|b| b.token.kind != Kind::Paste) {
+                out.push(PpToken {
+                    call,
+                    line_start: false,
+                    ..here.token
+                });
+                i += 1;
+                continue;
+            }
             let (piece, next) = self.operand(body, i, arguments, call, called.params.is_some());
             let pasted = body.get(next).is_some_and(|b| b.token.kind == Kind::Paste);
             if !pasted {

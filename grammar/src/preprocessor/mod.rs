@@ -20,6 +20,7 @@ use crate::span::Span;
 use macros::Macro;
 use scan::{Kind, PpToken, scan};
 use std::collections::{HashMap, HashSet};
+use std::hash::{BuildHasherDefault, Hasher};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -39,6 +40,28 @@ pub(crate) struct Preprocessed {
     pub diagnostics: Diagnostics,
     /// A limit ended the run: the tokens are not all there are.
     pub stopped: bool,
+}
+
+/// The FNV-1a hash: every name is looked up once, and names are short.
+#[derive(Clone, Copy)]
+struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Fnv(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hasher for Fnv {
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
 }
 
 /// A file that is being read.
@@ -83,7 +106,7 @@ pub(crate) struct Preprocessor<'o> {
     options: &'o Options,
     table: SourceTable,
     diagnostics: Diagnostics,
-    macros: HashMap<String, Rc<Macro>>,
+    macros: HashMap<String, Rc<Macro>, BuildHasherDefault<Fnv>>,
     inputs: Vec<Input>,
     frames: Vec<Frame>,
     /// Keys of the files that said `#pragma once`.
@@ -103,7 +126,7 @@ pub(crate) fn run(name: &str, text: &str, options: &Options) -> Preprocessed {
         options,
         table: SourceTable::new(),
         diagnostics: Diagnostics::default(),
-        macros: HashMap::new(),
+        macros: HashMap::default(),
         inputs: Vec::new(),
         frames: Vec::new(),
         once: HashSet::new(),
