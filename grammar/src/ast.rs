@@ -1,5 +1,8 @@
 //! The syntax tree of one translation unit, as the grammar builds it and before any name or type is looked up.
 //!
+//! An [`Expr`] drops its children without recursion, however deep the tree; so its fields cannot be moved out by a
+//! pattern: borrow them, or take them with `std::mem::take` and the like. See the crate's page for the depth to expect.
+//!
 //! Nodes own their children. Every node that a message may point at carries a [`Span`]; parentheses leave no node.
 
 use crate::span::Span;
