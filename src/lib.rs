@@ -4,6 +4,7 @@ pub mod bsdf;
 pub mod check;
 pub mod cli;
 pub mod closure;
+pub mod compile;
 pub mod exec;
 pub mod ir;
 pub mod lang;

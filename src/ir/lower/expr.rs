@@ -148,7 +148,7 @@ impl Lower<'_> {
         let params: Vec<Reg> = params.iter().flat_map(|param| self.expr_regs(param)).collect();
         let keywords = keywords.iter().map(|(at, value)| (*at, self.expr_regs(value))).collect();
         let dst = self.b.program.reg(Kind::Closure, false);
-        self.b.instr(Instr::Leaf { dst, closure, params, keywords, span: whole.span });
+        self.b.instr(Instr::Leaf { dst, closure, params, keywords, span: self.placed(whole.span) });
         dst
     }
 

@@ -10,6 +10,7 @@ use crate::lang::symbols::Symbol;
 use crate::lang::types::{Base, Element, Type};
 use std::collections::HashMap;
 use std::sync::Arc;
+use velour_grammar::Span;
 
 /// What a parameter of a layer gets instead of its default.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +49,7 @@ pub fn lower(layers: &[Layer], options: LowerOptions) -> Program {
     let mut ci = builder.constant(Const::NoClosure);
     let mut finished: Vec<HashMap<String, (Value, Type)>> = Vec::new();
     let mut outputs = Vec::new();
-    for layer in layers {
+    for (number, layer) in layers.iter().enumerate() {
         let mut lower = Lower {
             b: builder,
             shader: &layer.shader,
@@ -59,8 +60,10 @@ pub fn lower(layers: &[Layer], options: LowerOptions) -> Program {
             exit: None,
             assigned: Assigned::default(),
             connected: Vec::new(),
-            span: layer.shader.span,
+            layer: number as u32,
+            span: Span::NONE,
         };
+        lower.at(layer.shader.span);
         lower.layer(layer, &finished, ci);
         ci = lower.final_ci();
         let params = lower.final_params();

@@ -89,7 +89,7 @@ impl Lower<'_> {
         for expr in condition.into_iter().chain(step) {
             effects.vars.extend(self.assigned.of_expr(self.shader, expr).vars);
         }
-        let span = condition.map_or(self.span, |c| c.span);
+        let span = condition.map_or(self.span, |c| self.placed(c.span));
         let (leave, next) = (self.b.scope(), self.b.scope());
         self.region(effects.vars.into_iter().collect(), |l| {
             l.loops.push((leave, next));

@@ -40,6 +40,7 @@ impl Lower<'_> {
             }
         }
         self.at(span);
+        let span = self.span;
         let to = match name {
             "format" => {
                 return Value::Regs(self.b.call(Routine::Format(format), &[Kind::String], src, span));

@@ -32,6 +32,9 @@ pub enum Value {
     Struct(Vec<Value>),
 }
 
+/// Spans of layer `k` of a group start here times `k`; no text has as many tokens.
+pub const SPANS_PER_LAYER: u32 = 1 << 23;
+
 /// The register kind of a base type.
 pub fn kind_of(base: Base) -> Kind {
     match base {
@@ -242,7 +245,16 @@ impl Lower<'_> {
     /// Remembers where the text being lowered stands, for messages at run time.
     pub fn at(&mut self, span: Span) {
         if span != Span::NONE {
-            self.span = span;
+            self.span = self.placed(span);
         }
+    }
+
+    /// A span of this layer's text as a span of the whole group.
+    pub fn placed(&self, span: Span) -> Span {
+        if span == Span::NONE {
+            return span;
+        }
+        let offset = self.layer * SPANS_PER_LAYER;
+        Span { first: span.first.saturating_add(offset), last: span.last.saturating_add(offset) }
     }
 }
