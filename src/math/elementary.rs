@@ -35,6 +35,9 @@ mod wide;
 #[cfg(test)]
 mod tests;
 
+#[cfg(test)]
+mod lane_tests;
+
 pub use circular::{acos, asin, atan, atan2, cos, sin, sincos, tan};
 pub use error_function::{erf, erfc};
 pub use exponential::{exp, exp2, expm1};
