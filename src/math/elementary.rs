@@ -7,9 +7,21 @@
 //! Time in ns a lane, in a loop over 1024 lanes compiled for AVX2, one core of an AMD EPYC (benches/elementary.rs), and the
 //! greatest error found by the tests, in units in the last place:
 //!
-//! | function | ns | ulp | function | ns | ulp | function | ns | ulp |
-//! |---|---|---|---|---|---|---|---|---|
-//! TABLE
+//! | function | ns | ulp | function | ns | ulp |
+//! |---|---|---|---|---|---|
+//! | exp | 0.65 | 1.01 | asin | 1.8 | 0.51 |
+//! | exp2 | 0.54 | 1.13 | acos | 1.8 | 0.51 |
+//! | expm1 | 1.6 | 0.5 | atan | 1.8 | 0.51 |
+//! | ln | 0.88 | 0.79 | atan2 | 2.2 | 0.51 |
+//! | log2 | 1.4 | 0.5 | sinh | 2.2 | 0.5 |
+//! | log10 | 1.4 | 0.5 | cosh | 2.0 | 0.5 |
+//! | logb | 0.16 | 0 | tanh | 2.4 | 0.5 |
+//! | pow | 4.0 | 0.51 | cbrt | 2.0 | 0.5 |
+//! | pow_positive | 2.9 | see there | erf | 3.5 | < 1 |
+//! | sin | 1.1 | 1.47 | erfc | 3.7 | < 1 |
+//! | cos | 1.0 | 1.49 | rsqrt | 0.37 | 1.28 |
+//! | sincos | 1.2 | 1.49 | floor, ceil, trunc | 0.14 | 0 |
+//! | tan | 2.0 | 0.51 | round | 0.17 | 0 |
 
 mod circular;
 mod error_function;
@@ -22,6 +34,9 @@ mod wide;
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod lane_tests;
 
 pub use circular::{acos, asin, atan, atan2, cos, sin, sincos, tan};
 pub use error_function::{erf, erfc};

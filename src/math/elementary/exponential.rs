@@ -57,7 +57,7 @@ pub fn exp2(x: f32) -> f32 {
     let p = 1.545_336_2e-4 * f + 1.339_109_3e-3;
     let p = p * f + 9.618_082e-3;
     let p = p * f + 5.550_356_7e-2;
-    let p = p * f + 2.402_265_1e-1;
+    let p = p * f + 2.402_265e-1;
     let p = p * f + std::f32::consts::LN_2;
     let value = 1.0 + f * p;
     scale(value, (shifted.to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32))

@@ -24,7 +24,7 @@ pub fn ln(x: f32) -> f32 {
     // 2 (atanh(s)/s - 1) / s^2 on s^2 in [0, 0.0297], error 2^-29.1.
     let p = 2.334_194_3e-1 * z + 2.855_039_7e-1;
     let p = p * z + 4.000_012_6e-1;
-    let p = p * z + 6.666_666_7e-1;
+    let p = p * z + 6.666_667e-1;
     let half_square = 0.5 * f * f;
     let finite = s * (half_square + z * p) + k * LN_2_LOW - half_square + f + k * LN_2_HIGH;
     let result = if x == 0.0 { f32::NEG_INFINITY } else { finite };

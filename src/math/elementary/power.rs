@@ -49,7 +49,7 @@ pub fn cbrt(x: f32) -> f32 {
     let mut y = guess as f64;
     for _ in 0..2 {
         let cube = y * y * y;
-        y = y * ((cube + 2.0 * s) / (2.0 * cube + s));
+        y *= (cube + 2.0 * s) / (2.0 * cube + s);
     }
     let down = y * (1.0 / 256.0);
     let root = if denormal { down } else { y } as f32;

@@ -217,6 +217,7 @@ fn error_functions_stay_within_one_ulp() {
 }
 
 /// An argument, erf and erfc of it.
+#[allow(clippy::excessive_precision)]
 const ERROR_FUNCTION: [(f32, f64, f64); 43] = [
     (-12.0, -1.0, 2.0),
     (-6.0, -1.0, 2.0),

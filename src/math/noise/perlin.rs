@@ -36,13 +36,13 @@ impl Axis {
 
     /// The coordinate seen from the near (0) or far (1) side of the cell.
     #[inline(always)]
-    fn offset(&self, side: i32) -> f32 {
+    fn offset(&self, side: usize) -> f32 {
         if side == 0 { self.fraction } else { self.fraction - 1.0 }
     }
 
     #[inline(always)]
-    fn cell(&self, side: i32) -> i32 {
-        self.cell.wrapping_add(side)
+    fn cell(&self, side: usize) -> i32 {
+        self.cell.wrapping_add(side as i32)
     }
 
     /// Interpolates between the two sides; `axis` says which partial derivative gains the slope of the weight.
@@ -128,124 +128,193 @@ fn gradient4<const D: usize>(hash: u32, x: f32, y: f32, z: f32, w: f32) -> Jet<D
     jet(signed(u, hash, 0) + signed(v, hash, 1) + signed(s, hash, 2), [dx, dy, dz, dw])
 }
 
-/// The noise of one dimension from the hashes of its two corners.
+// From here on corners are numbered i + 2j + 4k + 8l. These are functions and not closures because only functions can be told to
+// be inlined always, and one call that is not inlined keeps the whole loop over lanes from becoming SIMD.
+
 #[inline(always)]
-fn blend1<const D: usize>(x: Axis, hash: impl Fn(i32) -> u32) -> Jet<D> {
-    let corner = |i| gradient1(hash(i), x.offset(i));
-    x.between(0, corner(0), corner(1)).scaled(SCALE[0])
+fn blend1<const D: usize>(x: &Axis, h: &[u32; 2], byte: u32) -> Jet<D> {
+    let near = gradient1(h[0] >> byte, x.offset(0));
+    let far = gradient1(h[1] >> byte, x.offset(1));
+    x.between(0, near, far).scaled(SCALE[0])
 }
 
 #[inline(always)]
-fn blend2<const D: usize>(x: Axis, y: Axis, hash: impl Fn(i32, i32) -> u32) -> Jet<D> {
-    let corner = |i, j| gradient2(hash(i, j), x.offset(i), y.offset(j));
-    let row = |j| x.between(0, corner(0, j), corner(1, j));
-    y.between(1, row(0), row(1)).scaled(SCALE[1])
+fn row2<const D: usize>(x: &Axis, y: &Axis, h: &[u32; 4], byte: u32, j: usize) -> Jet<D> {
+    let near = gradient2(h[2 * j] >> byte, x.offset(0), y.offset(j));
+    let far = gradient2(h[2 * j + 1] >> byte, x.offset(1), y.offset(j));
+    x.between(0, near, far)
 }
 
 #[inline(always)]
-fn blend3<const D: usize>(x: Axis, y: Axis, z: Axis, hash: impl Fn(i32, i32, i32) -> u32) -> Jet<D> {
-    let corner = |i, j, k| gradient3(hash(i, j, k), x.offset(i), y.offset(j), z.offset(k));
-    let column = |i, j| z.between(2, corner(i, j, 0), corner(i, j, 1));
-    let row = |j| x.between(0, column(0, j), column(1, j));
-    y.between(1, row(0), row(1)).scaled(SCALE[2])
+fn blend2<const D: usize>(x: &Axis, y: &Axis, h: &[u32; 4], byte: u32) -> Jet<D> {
+    y.between(1, row2(x, y, h, byte, 0), row2(x, y, h, byte, 1)).scaled(SCALE[1])
 }
 
 #[inline(always)]
-fn blend4<const D: usize>(x: Axis, y: Axis, z: Axis, w: Axis, hash: impl Fn(i32, i32, i32, i32) -> u32) -> Jet<D> {
-    let corner = |i, j, k, l| gradient4(hash(i, j, k, l), x.offset(i), y.offset(j), z.offset(k), w.offset(l));
-    let column = |i, j, l| z.between(2, corner(i, j, 0, l), corner(i, j, 1, l));
-    let row = |j, l| x.between(0, column(0, j, l), column(1, j, l));
-    let cube = |l| y.between(1, row(0, l), row(1, l));
-    w.between(3, cube(0), cube(1)).scaled(SCALE[3])
+fn column3<const D: usize>([x, y, z]: &[Axis; 3], h: &[u32; 8], byte: u32, i: usize, j: usize) -> Jet<D> {
+    let corner = i + 2 * j;
+    let near = gradient3(h[corner] >> byte, x.offset(i), y.offset(j), z.offset(0));
+    let far = gradient3(h[corner + 4] >> byte, x.offset(i), y.offset(j), z.offset(1));
+    z.between(2, near, far)
 }
 
 #[inline(always)]
-fn corner1(lattice: impl Lattice<1>, x: &Axis, i: i32) -> u32 {
+fn row3<const D: usize>(axes: &[Axis; 3], h: &[u32; 8], byte: u32, j: usize) -> Jet<D> {
+    axes[0].between(0, column3(axes, h, byte, 0, j), column3(axes, h, byte, 1, j))
+}
+
+#[inline(always)]
+fn blend3<const D: usize>(axes: &[Axis; 3], h: &[u32; 8], byte: u32) -> Jet<D> {
+    axes[1].between(1, row3(axes, h, byte, 0), row3(axes, h, byte, 1)).scaled(SCALE[2])
+}
+
+#[inline(always)]
+fn column4<const D: usize>(axes: &[Axis; 4], h: &[u32; 8], byte: u32, i: usize, j: usize, l: usize) -> Jet<D> {
+    let [x, y, z, w] = axes;
+    let corner = i + 2 * j;
+    let near = gradient4(h[corner] >> byte, x.offset(i), y.offset(j), z.offset(0), w.offset(l));
+    let far = gradient4(h[corner + 4] >> byte, x.offset(i), y.offset(j), z.offset(1), w.offset(l));
+    z.between(2, near, far)
+}
+
+#[inline(always)]
+fn row4<const D: usize>(axes: &[Axis; 4], h: &[u32; 8], byte: u32, j: usize, l: usize) -> Jet<D> {
+    axes[0].between(0, column4(axes, h, byte, 0, j, l), column4(axes, h, byte, 1, j, l))
+}
+
+#[inline(always)]
+fn cube4<const D: usize>(axes: &[Axis; 4], h: &[u32; 8], byte: u32, l: usize) -> Jet<D> {
+    axes[1].between(1, row4(axes, h, byte, 0, l), row4(axes, h, byte, 1, l))
+}
+
+#[inline(always)]
+fn blend4<const D: usize>(axes: &[Axis; 4], h: &[[u32; 8]; 2], byte: u32) -> Jet<D> {
+    axes[3].between(3, cube4(axes, &h[0], byte, 0), cube4(axes, &h[1], byte, 1)).scaled(SCALE[3])
+}
+
+#[inline(always)]
+fn corner1(lattice: impl Lattice<1>, x: &Axis, i: usize) -> u32 {
     let [x] = lattice.cell([x.cell(i)]);
     hash1(x)
 }
 
 #[inline(always)]
-fn corner2(lattice: impl Lattice<2>, x: &Axis, y: &Axis, i: i32, j: i32) -> u32 {
+fn corners1(lattice: impl Lattice<1>, x: &Axis) -> [u32; 2] {
+    [corner1(lattice, x, 0), corner1(lattice, x, 1)]
+}
+
+#[inline(always)]
+fn corner2(lattice: impl Lattice<2>, x: &Axis, y: &Axis, i: usize, j: usize) -> u32 {
     let [x, y] = lattice.cell([x.cell(i), y.cell(j)]);
     hash2(x, y)
 }
 
 #[inline(always)]
-fn corner3(lattice: impl Lattice<3>, x: &Axis, y: &Axis, z: &Axis, i: i32, j: i32, k: i32) -> u32 {
-    let [x, y, z] = lattice.cell([x.cell(i), y.cell(j), z.cell(k)]);
+fn corners2(lattice: impl Lattice<2>, x: &Axis, y: &Axis) -> [u32; 4] {
+    [
+        corner2(lattice, x, y, 0, 0),
+        corner2(lattice, x, y, 1, 0),
+        corner2(lattice, x, y, 0, 1),
+        corner2(lattice, x, y, 1, 1),
+    ]
+}
+
+#[inline(always)]
+fn corner3(lattice: impl Lattice<3>, axes: &[Axis; 3], i: usize, j: usize, k: usize) -> u32 {
+    let [x, y, z] = lattice.cell([axes[0].cell(i), axes[1].cell(j), axes[2].cell(k)]);
     hash3(x, y, z)
 }
 
 #[inline(always)]
-fn corner4(lattice: impl Lattice<4>, axes: &[Axis; 4], i: i32, j: i32, k: i32, l: i32) -> u32 {
+fn corners3(lattice: impl Lattice<3>, axes: &[Axis; 3]) -> [u32; 8] {
+    [
+        corner3(lattice, axes, 0, 0, 0),
+        corner3(lattice, axes, 1, 0, 0),
+        corner3(lattice, axes, 0, 1, 0),
+        corner3(lattice, axes, 1, 1, 0),
+        corner3(lattice, axes, 0, 0, 1),
+        corner3(lattice, axes, 1, 0, 1),
+        corner3(lattice, axes, 0, 1, 1),
+        corner3(lattice, axes, 1, 1, 1),
+    ]
+}
+
+#[inline(always)]
+fn corner4(lattice: impl Lattice<4>, axes: &[Axis; 4], i: usize, j: usize, k: usize, l: usize) -> u32 {
     let [x, y, z, w] = lattice.cell([axes[0].cell(i), axes[1].cell(j), axes[2].cell(k), axes[3].cell(l)]);
     hash4(x, y, z, w)
+}
+
+#[inline(always)]
+fn corners4(lattice: impl Lattice<4>, axes: &[Axis; 4], l: usize) -> [u32; 8] {
+    [
+        corner4(lattice, axes, 0, 0, 0, l),
+        corner4(lattice, axes, 1, 0, 0, l),
+        corner4(lattice, axes, 0, 1, 0, l),
+        corner4(lattice, axes, 1, 1, 0, l),
+        corner4(lattice, axes, 0, 0, 1, l),
+        corner4(lattice, axes, 1, 0, 1, l),
+        corner4(lattice, axes, 0, 1, 1, l),
+        corner4(lattice, axes, 1, 1, 1, l),
+    ]
 }
 
 /// Signed Perlin noise of one coordinate.
 #[inline(always)]
 pub fn perlin1<const D: usize>(lattice: impl Lattice<1>, x: f32) -> Jet<D> {
     let x = Axis::new(x);
-    blend1(x, |i| corner1(lattice, &x, i))
+    blend1(&x, &corners1(lattice, &x), 0)
 }
 
 /// Signed Perlin noise of two coordinates.
 #[inline(always)]
 pub fn perlin2<const D: usize>(lattice: impl Lattice<2>, x: f32, y: f32) -> Jet<D> {
     let (x, y) = (Axis::new(x), Axis::new(y));
-    blend2(x, y, |i, j| corner2(lattice, &x, &y, i, j))
+    blend2(&x, &y, &corners2(lattice, &x, &y), 0)
 }
 
 /// Signed Perlin noise of three coordinates.
 #[inline(always)]
 pub fn perlin3<const D: usize>(lattice: impl Lattice<3>, x: f32, y: f32, z: f32) -> Jet<D> {
-    let (x, y, z) = (Axis::new(x), Axis::new(y), Axis::new(z));
-    blend3(x, y, z, |i, j, k| corner3(lattice, &x, &y, &z, i, j, k))
+    let axes = [Axis::new(x), Axis::new(y), Axis::new(z)];
+    blend3(&axes, &corners3(lattice, &axes), 0)
 }
 
 /// Signed Perlin noise of four coordinates.
 #[inline(always)]
 pub fn perlin4<const D: usize>(lattice: impl Lattice<4>, x: f32, y: f32, z: f32, w: f32) -> Jet<D> {
     let axes = [Axis::new(x), Axis::new(y), Axis::new(z), Axis::new(w)];
-    let [x, y, z, w] = axes;
-    blend4(x, y, z, w, |i, j, k, l| corner4(lattice, &axes, i, j, k, l))
+    blend4(&axes, &[corners4(lattice, &axes, 0), corners4(lattice, &axes, 1)], 0)
 }
 
 /// Signed vector Perlin noise of one coordinate.
 #[inline(always)]
 pub fn perlin1_vector<const D: usize>(lattice: impl Lattice<1>, x: f32) -> [Jet<D>; 3] {
     let x = Axis::new(x);
-    let h = [corner1(lattice, &x, 0), corner1(lattice, &x, 1)];
-    [0, 8, 16].map(|byte| blend1(x, |i| h[i as usize] >> byte))
+    let h = corners1(lattice, &x);
+    [blend1(&x, &h, 0), blend1(&x, &h, 8), blend1(&x, &h, 16)]
 }
 
 /// Signed vector Perlin noise of two coordinates.
 #[inline(always)]
 pub fn perlin2_vector<const D: usize>(lattice: impl Lattice<2>, x: f32, y: f32) -> [Jet<D>; 3] {
     let (x, y) = (Axis::new(x), Axis::new(y));
-    let at = |i, j| corner2(lattice, &x, &y, i, j);
-    let h = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-    [0, 8, 16].map(|byte| blend2(x, y, |i, j| h[(i + 2 * j) as usize] >> byte))
+    let h = corners2(lattice, &x, &y);
+    [blend2(&x, &y, &h, 0), blend2(&x, &y, &h, 8), blend2(&x, &y, &h, 16)]
 }
 
 /// Signed vector Perlin noise of three coordinates.
 #[inline(always)]
 pub fn perlin3_vector<const D: usize>(lattice: impl Lattice<3>, x: f32, y: f32, z: f32) -> [Jet<D>; 3] {
-    let (x, y, z) = (Axis::new(x), Axis::new(y), Axis::new(z));
-    let at = |i, j, k| corner3(lattice, &x, &y, &z, i, j, k);
-    let face = |k| [at(0, 0, k), at(1, 0, k), at(0, 1, k), at(1, 1, k)];
-    let h = [face(0), face(1)];
-    [0, 8, 16].map(|byte| blend3(x, y, z, |i, j, k| h[k as usize][(i + 2 * j) as usize] >> byte))
+    let axes = [Axis::new(x), Axis::new(y), Axis::new(z)];
+    let h = corners3(lattice, &axes);
+    [blend3(&axes, &h, 0), blend3(&axes, &h, 8), blend3(&axes, &h, 16)]
 }
 
 /// Signed vector Perlin noise of four coordinates.
 #[inline(always)]
 pub fn perlin4_vector<const D: usize>(lattice: impl Lattice<4>, x: f32, y: f32, z: f32, w: f32) -> [Jet<D>; 3] {
     let axes = [Axis::new(x), Axis::new(y), Axis::new(z), Axis::new(w)];
-    let [x, y, z, w] = axes;
-    let at = |i, j, k, l| corner4(lattice, &axes, i, j, k, l);
-    let face = |k, l| [at(0, 0, k, l), at(1, 0, k, l), at(0, 1, k, l), at(1, 1, k, l)];
-    let h = [face(0, 0), face(1, 0), face(0, 1), face(1, 1)];
-    [0, 8, 16].map(|byte| blend4(x, y, z, w, |i, j, k, l| h[(k + 2 * l) as usize][(i + 2 * j) as usize] >> byte))
+    let h = [corners4(lattice, &axes, 0), corners4(lattice, &axes, 1)];
+    [blend4(&axes, &h, 0), blend4(&axes, &h, 8), blend4(&axes, &h, 16)]
 }

@@ -85,6 +85,61 @@ fn sum<const D: usize>(mut total: Jet<D>, more: Jet<D>) -> Jet<D> {
     total
 }
 
+/// A skewed cell and the point in it. The corners are methods and not closures, as only functions can be told to be inlined
+/// always, without which a loop over lanes does not become SIMD.
+struct Cell<const N: usize> {
+    seed: u32,
+    /// The point seen from the first corner.
+    origin: [f32; N],
+    index: [i32; N],
+}
+
+impl<const N: usize> Cell<N> {
+    /// The point seen from the corner that is `step` cells away, and that corner's cell.
+    #[inline(always)]
+    fn seen(&self, back: f32, step: [i32; N]) -> ([f32; N], [u32; N]) {
+        let (mut offset, mut cell) = ([0.0; N], [0; N]);
+        for axis in 0..N {
+            offset[axis] = self.origin[axis] - step[axis] as f32 + back;
+            cell[axis] = self.index[axis].wrapping_add(step[axis]) as u32;
+        }
+        (offset, cell)
+    }
+}
+
+impl Cell<2> {
+    #[inline(always)]
+    fn corner2<const D: usize>(&self, back: f32, a: i32, b: i32) -> Jet<D> {
+        let (offset, [i, j]) = self.seen(back, [a, b]);
+        corner(0.5, offset, gradient2(scramble(i, j, self.seed)))
+    }
+}
+
+impl Cell<3> {
+    /// The corner that steps along the axes whose rank is at least `least`.
+    #[inline(always)]
+    fn corner3<const D: usize>(&self, rank: [i32; 3], back: f32, least: i32) -> Jet<D> {
+        let step = [(rank[0] >= least) as i32, (rank[1] >= least) as i32, (rank[2] >= least) as i32];
+        let (offset, [i, j, k]) = self.seen(back, step);
+        corner(0.5, offset, gradient3(scramble(i, j, scramble(k, self.seed, 0))))
+    }
+}
+
+impl Cell<4> {
+    /// The corner that steps along the axes whose rank is at least `least`.
+    #[inline(always)]
+    fn corner4<const D: usize>(&self, rank: [i32; 4], back: f32, least: i32) -> Jet<D> {
+        let step = [
+            (rank[0] >= least) as i32,
+            (rank[1] >= least) as i32,
+            (rank[2] >= least) as i32,
+            (rank[3] >= least) as i32,
+        ];
+        let (offset, [i, j, k, l]) = self.seen(back, step);
+        corner(0.5, offset, gradient4(scramble(i, j, scramble(k, l, self.seed))))
+    }
+}
+
 /// Signed simplex noise of one coordinate.
 #[inline(always)]
 pub fn simplex1<const D: usize>(seed: u32, x: f32) -> Jet<D> {
@@ -112,13 +167,9 @@ pub fn simplex2<const D: usize>(seed: u32, x: f32, y: f32) -> Jet<D> {
     let x0 = x - (i as f32 - t);
     let y0 = y - (j as f32 - t);
     let lower = (x0 > y0) as i32;
-    let at = |n: f32, a: i32, b: i32| {
-        let offset = [x0 - a as f32 + n * BACK, y0 - b as f32 + n * BACK];
-        let h = scramble(i.wrapping_add(a) as u32, j.wrapping_add(b) as u32, seed);
-        corner(0.5, offset, gradient2(h))
-    };
-    let total = sum(at(0.0, 0, 0), at(1.0, lower, 1 - lower));
-    sum(total, at(2.0, 1, 1)).scaled(SCALE[1])
+    let cell = Cell { seed, origin: [x0, y0], index: [i, j] };
+    let total = sum(cell.corner2(0.0, 0, 0), cell.corner2(BACK, lower, 1 - lower));
+    sum(total, cell.corner2(2.0 * BACK, 1, 1)).scaled(SCALE[1])
 }
 
 /// Signed simplex noise of three coordinates.
@@ -135,15 +186,10 @@ pub fn simplex3<const D: usize>(seed: u32, x: f32, y: f32, z: f32) -> Jet<D> {
     // How many of the others each coordinate passes; the corners are walked from the greatest to the least.
     let (xy, yz, xz) = ((x0 >= y0) as i32, (y0 >= z0) as i32, (x0 >= z0) as i32);
     let rank = [xy + xz, 1 - xy + yz, 2 - xz - yz];
-    let at = |n: f32, least: i32| {
-        let [a, b, c] = rank.map(|r| (r >= least) as i32);
-        let offset = [x0 - a as f32 + n * BACK, y0 - b as f32 + n * BACK, z0 - c as f32 + n * BACK];
-        let h = scramble(k.wrapping_add(c) as u32, seed, 0);
-        let h = scramble(i.wrapping_add(a) as u32, j.wrapping_add(b) as u32, h);
-        corner(0.5, offset, gradient3(h))
-    };
-    let total = sum(sum(at(0.0, 3), at(1.0, 2)), at(2.0, 1));
-    sum(total, at(3.0, 0)).scaled(SCALE[2])
+    let cell = Cell { seed, origin: [x0, y0, z0], index: [i, j, k] };
+    let total = sum(cell.corner3(rank, 0.0, 3), cell.corner3(rank, BACK, 2));
+    let total = sum(total, cell.corner3(rank, 2.0 * BACK, 1));
+    sum(total, cell.corner3(rank, 3.0 * BACK, 0)).scaled(SCALE[2])
 }
 
 /// Signed simplex noise of four coordinates.
@@ -160,38 +206,33 @@ pub fn simplex4<const D: usize>(seed: u32, x: f32, y: f32, z: f32, w: f32) -> Je
     let (xy, xz, xw) = ((x0 > y0) as i32, (x0 > z0) as i32, (x0 > w0) as i32);
     let (yz, yw, zw) = ((y0 > z0) as i32, (y0 > w0) as i32, (z0 > w0) as i32);
     let rank = [xy + xz + xw, 1 - xy + yz + yw, 2 - xz - yz + zw, 3 - xw - yw - zw];
-    let at = |n: f32, least: i32| {
-        let [a, b, c, d] = rank.map(|r| (r >= least) as i32);
-        let back = n * BACK;
-        let offset = [x0 - a as f32 + back, y0 - b as f32 + back, z0 - c as f32 + back, w0 - d as f32 + back];
-        let h = scramble(k.wrapping_add(c) as u32, l.wrapping_add(d) as u32, seed);
-        let h = scramble(i.wrapping_add(a) as u32, j.wrapping_add(b) as u32, h);
-        corner(0.5, offset, gradient4(h))
-    };
-    let total = sum(sum(at(0.0, 4), at(1.0, 3)), at(2.0, 2));
-    sum(sum(total, at(3.0, 1)), at(4.0, 0)).scaled(SCALE[3])
+    let cell = Cell { seed, origin: [x0, y0, z0, w0], index: cell };
+    let total = sum(cell.corner4(rank, 0.0, 4), cell.corner4(rank, BACK, 3));
+    let total = sum(total, cell.corner4(rank, 2.0 * BACK, 2));
+    let total = sum(total, cell.corner4(rank, 3.0 * BACK, 1));
+    sum(total, cell.corner4(rank, 4.0 * BACK, 0)).scaled(SCALE[3])
 }
 
 /// Signed vector simplex noise of one coordinate.
 #[inline(always)]
 pub fn simplex1_vector<const D: usize>(x: f32) -> [Jet<D>; 3] {
-    [0, 1, 2].map(|seed| simplex1(seed, x))
+    [simplex1(0, x), simplex1(1, x), simplex1(2, x)]
 }
 
 /// Signed vector simplex noise of two coordinates.
 #[inline(always)]
 pub fn simplex2_vector<const D: usize>(x: f32, y: f32) -> [Jet<D>; 3] {
-    [0, 1, 2].map(|seed| simplex2(seed, x, y))
+    [simplex2(0, x, y), simplex2(1, x, y), simplex2(2, x, y)]
 }
 
 /// Signed vector simplex noise of three coordinates.
 #[inline(always)]
 pub fn simplex3_vector<const D: usize>(x: f32, y: f32, z: f32) -> [Jet<D>; 3] {
-    [0, 1, 2].map(|seed| simplex3(seed, x, y, z))
+    [simplex3(0, x, y, z), simplex3(1, x, y, z), simplex3(2, x, y, z)]
 }
 
 /// Signed vector simplex noise of four coordinates.
 #[inline(always)]
 pub fn simplex4_vector<const D: usize>(x: f32, y: f32, z: f32, w: f32) -> [Jet<D>; 3] {
-    [0, 1, 2].map(|seed| simplex4(seed, x, y, z, w))
+    [simplex4(0, x, y, z, w), simplex4(1, x, y, z, w), simplex4(2, x, y, z, w)]
 }

@@ -185,6 +185,7 @@ fn noise_takes_any_number() {
 }
 
 #[rustfmt::skip]
+#[allow(clippy::excessive_precision)]
 const GOLDEN: &[Golden] = &[
     ("perlin1", &[0.300000012], &[0.348075002]),
     ("perlin1v", &[0.300000012], &[0.348075002, -0.513617992, -0.353850037]),
