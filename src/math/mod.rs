@@ -1,3 +1,6 @@
 //! Numbers without a language: columns, elementary functions, frames, warps, noise.
 
 pub mod columns;
+pub mod frame;
+pub mod quadrature;
+pub mod warp;
