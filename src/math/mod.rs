@@ -1,6 +1,7 @@
 //! Numbers without a language: columns, elementary functions, frames, warps, noise.
 
 pub mod columns;
+pub mod elementary;
 pub mod frame;
 pub mod quadrature;
 pub mod warp;

@@ -10,7 +10,7 @@
 use super::fits::{ALBEDO_EXACT, ALBEDO_EXACT_SOFT};
 use super::reference::{self, Model};
 use super::shadowing::Shadowing;
-use crate::math::elementary::{cbrt, ln};
+use crate::math::elementary::ln;
 use std::sync::LazyLock;
 
 /// Coefficients of a curve in the cube root of the cosine.
@@ -71,7 +71,7 @@ impl AlbedoCurve {
     /// The albedo at a cosine; clamped to 0..1.
     #[inline(always)]
     pub fn at(&self, cos: f32) -> f32 {
-        let t = cbrt(cos.clamp(MIN_COS, 1.0));
+        let t = cube_root(cos.clamp(MIN_COS, 1.0));
         let x = (t - MIN_T) * (2.0 / (1.0 - MIN_T)) - 1.0;
         let value = if self.short { chebyshev::<SHORT>(self.c.first_chunk().unwrap_or(&[0.0; SHORT]), x) } else { chebyshev(&self.c, x) };
         value.clamp(0.0, 1.0)
@@ -100,6 +100,20 @@ const GAUSS: [(f32, f32); 4] = [
     (0.796_666_5, 0.222_381_03),
     (0.960_289_86, 0.101_228_54),
 ];
+
+/// The cube root in single precision, for cosines.
+///
+/// Source: Kahan 1991, exponent over three, then two steps of Halley. Domain: 1e-4..1. Gives: relative error below 3e-7.
+/// The library's function is exact to the last bit and costs two divisions in f64; the curve needs neither.
+#[inline(always)]
+fn cube_root(x: f32) -> f32 {
+    let mut y = f32::from_bits(x.to_bits() / 3 + 709_958_130);
+    for _ in 0..2 {
+        let cube = y * y * y;
+        y *= (cube + 2.0 * x) / (2.0 * cube + x);
+    }
+    y
+}
 
 #[inline(always)]
 fn roughness_axis(r: f32) -> f32 {
