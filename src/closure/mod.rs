@@ -1,3 +1,15 @@
 //! The closure tree: print it, flatten it to weighted lobes, scale bases by albedo, evaluate and sample.
 
+mod batch;
+mod flatten;
+mod layering;
+mod leaves;
+pub mod lobes;
+mod sampling;
+pub mod settings;
+mod surfaces;
 pub mod tree;
+
+pub use lobes::{Dropped, Evaluation, LobeInfo, Lobes};
+pub use sampling::{Samples, event};
+pub use settings::{Layering, Settings};

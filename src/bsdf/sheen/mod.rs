@@ -10,7 +10,7 @@
 
 pub mod albedo;
 pub mod charlie;
-mod fits;
+pub mod fits;
 pub mod reference;
 pub mod sampling;
 pub mod shadowing;
@@ -74,12 +74,6 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
         select(co > 0.0 && ci > 0.0, value, 0.0)
     }
 
-    /// Cosine-weighted mean of the albedo over the hemisphere, for the scale of Kelemen.
-    #[inline(always)]
-    pub fn average_albedo(&self) -> f32 {
-        self.albedo.average()
-    }
-
     /// The same lobe with another share of uniform samples: 1 is the sampling of the paper.
     #[inline(always)]
     pub fn with_uniform_share(mut self, share: f32) -> Self {
@@ -117,6 +111,6 @@ impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
 
     #[inline(always)]
     fn albedo(&self, cos: f32) -> f32 {
-        self.albedo.at(cos)
+        if SHADOWING == EXACT { self.albedo.at::<false>(cos) } else { self.albedo.at::<true>(cos) }
     }
 }
