@@ -1,1 +1,74 @@
-//! The bsdf room.
+//! Scattering models: one file a model, plain scalar functions in the local frame where the shading normal is z.
+//!
+//! A model is a small `Copy` struct of constants made once from its parameters. Its functions are branch-free and
+//! `#[inline(always)]`, so that a loop over lanes becomes SIMD code of whatever width the machine has, with equal bits
+//! on every width. Colors live in the weights of the lobes: the models themselves are achromatic (F = 1 or dielectric).
+//!
+//! The room knows no closure and no tree; [`crate::closure`] turns closures into these models.
+//!
+//! Decision (2026-11-22): [`Eval`] holds one float for f |cos|, not a triple, because every model here is achromatic
+//! and color is a weight of the lobe, instead of three equal floats that the lane loops would multiply and keep.
+
+pub mod fresnel;
+pub mod lambert;
+pub mod microfacet;
+pub mod oren_nayar;
+pub mod sheen;
+pub mod specular;
+
+use glam::Vec3;
+
+/// What a model says about one pair of directions.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Eval {
+    /// f * |cos_i|, 1/sr.
+    pub f_cos: f32,
+    /// Density (solid angle, 1/sr) with which [`Scatter::sample`] chooses `wi`.
+    pub pdf: f32,
+}
+
+/// A scattering model with its constants, as the lane loops see it.
+///
+/// Directions are unit, local (z = shading normal) and point away from the surface; `wo.z` is positive.
+pub trait Scatter: Copy {
+    /// How many of the four parameters it reads.
+    const PARAMS: usize;
+    /// True when light leaves on the other side of the surface.
+    const TRANSMITS: bool;
+    /// Makes the constants from parameters, which are clamped to what the model supports.
+    fn prepare(params: [f32; 4]) -> Self;
+    /// f |cos_i| and density of one direction; zero where the model scatters nothing, never NaN.
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval;
+    /// A direction for three numbers in [0, 1); it may lie where `eval` gives zero, and is zero when there is none.
+    fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3;
+    /// Directional albedo at this cosine, an estimate that each model documents.
+    fn albedo(&self, cos: f32) -> f32;
+    /// Mean of the albedo over the hemisphere, weighted by the cosine.
+    ///
+    /// Source: Gauss-Legendre of 8 nodes in the cube root of the cosine, exact for albedos of degree 10 in it.
+    #[inline(always)]
+    fn average_albedo(&self) -> f32 {
+        let mut sum = 0.0;
+        for (x, weight) in GAUSS {
+            for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
+                let t2 = t * t;
+                sum += 3.0 * weight * t2 * t2 * t * self.albedo(t2 * t);
+            }
+        }
+        sum
+    }
+}
+
+/// One lane's choice between two numbers, which compiles to a blend.
+#[inline(always)]
+pub(crate) fn select(condition: bool, yes: f32, no: f32) -> f32 {
+    if condition { yes } else { no }
+}
+
+/// Positive nodes and weights of the 8-point Gauss-Legendre rule on -1..1, exact to f32.
+pub(crate) const GAUSS: [(f32, f32); 4] = [
+    (0.183_434_64, 0.362_683_78),
+    (0.525_532_4, 0.313_706_65),
+    (0.796_666_5, 0.222_381_03),
+    (0.960_289_86, 0.101_228_54),
+];

@@ -1,4 +1,16 @@
 //! The closure tree: print it, flatten it to weighted lobes, scale bases by albedo, evaluate and sample.
 
+mod batch;
+mod flatten;
+mod layering;
+mod leaves;
+pub mod lobes;
 pub mod print;
+mod sampling;
+pub mod settings;
+mod surfaces;
 pub mod tree;
+
+pub use lobes::{Dropped, Evaluation, LobeInfo, Lobes};
+pub use sampling::{Samples, event};
+pub use settings::{Layering, Settings};

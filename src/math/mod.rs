@@ -2,4 +2,7 @@
 
 pub mod columns;
 pub mod elementary;
+pub mod frame;
 pub mod noise;
+pub mod quadrature;
+pub mod warp;

@@ -1,1 +1,4 @@
-//! The measure room.
+//! Measurements: what `verify` and `chart` run on, and what the tests hold.
+
+pub mod furnace;
+pub mod statistics;

@@ -1,0 +1,143 @@
+//! Shadowing and masking of the Charlie sheen: the exact term, the fit the paper publishes, and a real-time visibility.
+//!
+//! The paper fits Lambda because the projected-area integral "has no easy solution". It has one: with n = 1/r,
+//! c (1 + 2 Lambda(c)) = f(c) = 2F1(-1/2, -n/2; 1; 1 - c²), hence G / (4 ci co) = 1 / (2 (f_i co + f_o ci)).
+
+use crate::math::elementary::{exp, ln};
+use crate::bsdf::select;
+use std::fmt;
+use std::str::FromStr;
+
+/// Which shadowing term a sheen uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Shadowing {
+    /// Smith's term computed from D itself, by a fit that errs by at most 0.5 % of Lambda (r >= 0.06). The default: it
+    /// costs less than half of the published fit and never gains energy.
+    #[default]
+    Exact,
+    /// The fit of the paper (eq. 3, Table 1), faithful to the digit; errs by up to 34 % of Lambda for r >= 0.06.
+    Published,
+    /// Visibility of Ashikhmin and Premoze 2007 as real-time engines use it; gains energy for r < 0.21.
+    Ashikhmin,
+}
+
+impl Shadowing {
+    /// All variants with the word that selects them.
+    pub const ALL: [(&'static str, Shadowing); 3] =
+        [("exact", Shadowing::Exact), ("published", Shadowing::Published), ("ashikhmin", Shadowing::Ashikhmin)];
+}
+
+impl FromStr for Shadowing {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == text);
+        found.map(|&(_, v)| v).ok_or_else(|| {
+            format!("unknown shadowing term \"{text}\"; choose \"exact\", \"published\" or \"ashikhmin\"")
+        })
+    }
+}
+
+impl fmt::Display for Shadowing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = Self::ALL.iter().find(|(_, v)| v == self).map_or("", |(name, _)| name);
+        f.write_str(name)
+    }
+}
+
+/// Constants of the exact term for one roughness.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact {
+    h: f32,
+    p: f32,
+    q: f32,
+}
+
+impl Exact {
+    /// Source: own fit to 2F1 with the exact values of f² and its slope at c = 1 and of f at c = 0.
+    /// Domain: n = 1/r in 1..100. Constants: fitted on that range; Lambda errs by at most 0.71 % (r >= 0.01),
+    /// 0.51 % (r >= 0.06), 0.29 % (r >= 0.15); the albedo by at most 1.1e-4.
+    #[inline(always)]
+    pub fn new(n: f32) -> Self {
+        let h = 0.5 * n;
+        let q = (n - 2.0) * (0.285_860_1 + 0.032_219_96 * n) / (1.0 + 0.109_720_61 * n);
+        let f2 = std::f32::consts::FRAC_2_PI * (n + 1.5) + 0.081_874_33 / (n + 1.759_683_4);
+        Exact { h, p: (f2 - 1.0) * (1.0 + q) - h, q }
+    }
+
+    /// f(c) = c (1 + 2 Lambda(c)). Domain: 0..1. Gives: 1 at c = 1, growing to about sqrt(2 n / pi) at c = 0.
+    #[inline(always)]
+    pub fn f(&self, cos: f32) -> f32 {
+        let u = (1.0 - cos) * (1.0 + cos);
+        (1.0 + u * (self.h + self.p * u) / (1.0 + self.q * u)).max(1.0).sqrt()
+    }
+
+    /// Lambda. Domain: (0, 1]. Gives: 0 at c = 1, growing as 1/c; finite (clamped) at c = 0.
+    /// The difference of squares keeps all digits near c = 1.
+    #[inline(always)]
+    pub fn lambda(&self, cos: f32) -> f32 {
+        let c = cos.max(1e-30);
+        let u = ((1.0 - c) * (1.0 + c)).max(0.0);
+        let rise = (self.h + self.p * u) / (1.0 + self.q * u);
+        let f = (1.0 + u * rise).max(1.0).sqrt();
+        (u * (1.0 + rise)).max(0.0) / (2.0 * c * (f + c))
+    }
+}
+
+/// Constants of the published fit for one roughness.
+#[derive(Clone, Copy, Debug)]
+pub struct Published {
+    a: f32,
+    b: f32,
+    c: f32,
+    d: f32,
+    e: f32,
+    twice_middle: f32,
+}
+
+impl Published {
+    /// Source: Estevez and Kulla 2017, Table 1 and its interpolation in (1 - r)². Domain: r 0.01..1.
+    #[inline(always)]
+    pub fn new(r: f32) -> Self {
+        let t = (1.0 - r) * (1.0 - r);
+        let mix = |p0: f32, p1: f32| t * p0 + (1.0 - t) * p1;
+        let mut fit = Published {
+            a: mix(25.3245, 21.5473),
+            b: mix(3.32435, 3.82987),
+            c: mix(0.16801, 0.19823),
+            d: mix(-1.27393, -1.97760),
+            e: mix(-4.85967, -4.32054),
+            twice_middle: 0.0,
+        };
+        fit.twice_middle = 2.0 * fit.l(0.5);
+        fit
+    }
+
+    #[inline(always)]
+    fn l(&self, x: f32) -> f32 {
+        let power = select(x > 0.0, exp(self.c * ln(x.max(f32::MIN_POSITIVE))), 0.0);
+        self.a / (1.0 + self.b * power) + self.d * x + self.e
+    }
+
+    /// Lambda of eq. 3. Domain: 0..1. Gives: about 1e-8 at c = 1, finite (3e7 at r = 1) at c = 0 where the truth is
+    /// infinite: below c = 1e-5 this fit gains energy at every roughness.
+    #[inline(always)]
+    pub fn lambda(&self, cos: f32) -> f32 {
+        let c = cos.clamp(0.0, 1.0);
+        let low = c < 0.5;
+        let l = self.l(select(low, c, 1.0 - c));
+        exp(select(low, l, self.twice_middle - l))
+    }
+}
+
+/// The light-side Lambda with a softer terminator.
+///
+/// Source: Estevez and Kulla 2017, eq. 4: Lambda^(1 + 2 (1 - cos)^8). Domain: Lambda >= 0, cos 0..1.
+/// Gives: >= 0, at most 1e38. Degenerate cases: Lambda 0 stays 0.
+#[inline(always)]
+pub fn soften(lambda: f32, cos: f32) -> f32 {
+    let x = 1.0 - cos;
+    let x2 = x * x;
+    let x4 = x2 * x2;
+    select(lambda > 1e-37, exp(((1.0 + 2.0 * x4 * x4) * ln(lambda.max(1e-37))).min(87.0)), 0.0)
+}

@@ -1,0 +1,421 @@
+//! Flattening: one sweep over the tree from the root down, which pushes weights and layers to the leaves.
+//!
+//! Children are older than their parents, so visiting nodes by falling index sees every parent before its children: no
+//! recursion, no stack, and a node that several parents share is visited once. What reaches a node under the same layer
+//! is summed there, so `Ci = Ci + Ci` fifty times is one lobe and not 2^50.
+
+use super::layering::{Layer, Layers, Side, Step, Top, surface_albedo};
+use super::leaves::{Leaf, LeafContext, prepare_leaf};
+use super::lobes::{Dropped, Lobe, Lobes};
+use super::settings::Layering;
+use super::surfaces::{NONE, Surfaces};
+use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
+use crate::lang::closures::ClosureTable;
+use crate::math::columns::Column3;
+
+/// More lobes or pending weights than this are dropped and reported: a shared base under many different layers could
+/// otherwise grow without bound.
+const MOST: usize = 1 << 17;
+/// How many dropped lanes are listed.
+const MOST_DROPPED: usize = 256;
+
+/// A weight on its way down.
+#[derive(Clone, Copy, Debug)]
+enum Weight {
+    Uniform([f32; 3]),
+    /// Offset of three columns in [`Sweep::columns`].
+    Columns(u32),
+}
+
+/// What reaches a node, as a list a node.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    next: u32,
+    layer: u32,
+    weight: Weight,
+}
+
+/// Scratch memory of flattening.
+#[derive(Debug, Default)]
+pub struct Sweep {
+    heads: Vec<u32>,
+    entries: Vec<Entry>,
+    columns: Vec<f32>,
+    in_top: Vec<bool>,
+    step_of: Vec<u32>,
+    leaves_of: Vec<(u32, u32)>,
+    emitters: Vec<(Weight, u32, bool)>,
+}
+
+impl Sweep {
+    fn clear(&mut self, nodes: usize) {
+        self.heads.clear();
+        self.heads.resize(nodes, NONE);
+        self.in_top.clear();
+        self.in_top.resize(nodes, false);
+        self.step_of.clear();
+        self.step_of.resize(nodes, 0);
+        self.leaves_of.clear();
+        self.leaves_of.resize(nodes, (0, 0));
+        self.entries.clear();
+        self.columns.clear();
+        self.emitters.clear();
+    }
+
+    fn get(&self, weight: Weight, component: usize, lane: usize, lanes: usize) -> f32 {
+        match weight {
+            Weight::Uniform(value) => value[component],
+            Weight::Columns(at) => self.columns[at as usize + component * lanes + lane],
+        }
+    }
+
+    fn make(&mut self, lanes: usize, value: impl Fn(&Self, usize, usize) -> f32) -> Weight {
+        let at = self.columns.len() as u32;
+        for component in 0..3 {
+            for lane in 0..lanes {
+                let v = value(self, component, lane);
+                self.columns.push(v);
+            }
+        }
+        Weight::Columns(at)
+    }
+
+    fn times(&mut self, tree: &Tree, weight: Weight, factor: [Floats; 3]) -> Weight {
+        if let (Weight::Uniform(w), [Floats::Uniform(x), Floats::Uniform(y), Floats::Uniform(z)]) = (weight, factor) {
+            return Weight::Uniform([w[0] * x, w[1] * y, w[2] * z]);
+        }
+        let n = tree.lanes;
+        self.make(n, |this, c, lane| this.get(weight, c, lane, n) * tree.float(factor[c], lane))
+    }
+
+    /// The weight where a condition holds and zero elsewhere.
+    fn masked(&mut self, lanes: usize, weight: Weight, keep: impl Fn(usize) -> bool) -> Weight {
+        self.make(lanes, |this, c, lane| if keep(lane) { this.get(weight, c, lane, lanes) } else { 0.0 })
+    }
+
+    /// Sends a weight to a node; false when there are too many.
+    fn send(&mut self, lanes: usize, node: Option<NodeId>, layer: u32, weight: Weight) -> bool {
+        let Some(NodeId(node)) = node else { return true };
+        let mut at = self.heads[node as usize];
+        while at != NONE {
+            let entry = self.entries[at as usize];
+            if entry.layer == layer {
+                let sum = match (entry.weight, weight) {
+                    (Weight::Uniform(a), Weight::Uniform(b)) => Weight::Uniform(std::array::from_fn(|k| a[k] + b[k])),
+                    (a, b) => self.make(lanes, |t, c, lane| t.get(a, c, lane, lanes) + t.get(b, c, lane, lanes)),
+                };
+                self.entries[at as usize].weight = sum;
+                return true;
+            }
+            at = entry.next;
+        }
+        if self.entries.len() >= MOST {
+            return false;
+        }
+        self.entries.push(Entry { next: self.heads[node as usize], layer, weight });
+        self.heads[node as usize] = self.entries.len() as u32 - 1;
+        true
+    }
+}
+
+/// See [`Lobes::flatten`].
+pub(super) fn flatten(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, wo: &Column3, ng: &Column3) {
+    let n = tree.lanes;
+    lobes.lanes = n;
+    lobes.wo.clone_from(wo);
+    lobes.ng.clone_from(ng);
+    lobes.ones.resize(n, 1.0);
+    lobes.surfaces.clear(n);
+    lobes.layers.clear();
+    lobes.lobes.clear();
+    lobes.weights.clear();
+    lobes.dropped.clear();
+    lobes.sweep.clear(tree.nodes.len());
+    // The first column is 1 everywhere: the t of whatever has none.
+    lobes.surfaces.push_column(|_| 1.0);
+    if let Some(root) = tree.root {
+        lobes.sweep.send(n, Some(root), NONE, Weight::Uniform([1.0; 3]));
+        for index in (0..=root.0).rev() {
+            if lobes.sweep.heads[index as usize] != NONE {
+                visit(lobes, table, tree, index);
+            }
+        }
+        build_steps(&mut lobes.sweep, &mut lobes.layers, &mut lobes.surfaces, table, tree, root);
+    }
+    lobes.layers.prepare(&lobes.surfaces, &lobes.ones);
+    emit(lobes);
+    pick(lobes);
+}
+
+fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
+    let n = tree.lanes;
+    let in_top = lobes.sweep.in_top[index as usize];
+    let below = |lobes: &mut Lobes, child: Option<NodeId>| {
+        if let (true, Some(child)) = (in_top, child) {
+            lobes.sweep.in_top[child.0 as usize] = true;
+        }
+    };
+    let mut at = lobes.sweep.heads[index as usize];
+    let leaf = match tree.nodes[index as usize] {
+        Node::Leaf { closure, .. } => {
+            let context = LeafContext { tree, settings: lobes.settings, wo: &lobes.wo, ng: &lobes.ng };
+            let spec = table.get(closure);
+            let leaf = prepare_leaf(&mut lobes.surfaces, &context, spec, &tree.nodes[index as usize]);
+            let first = lobes.layers.leaves.len() as u32;
+            lobes.layers.leaves.extend(leaf.parts.iter().map(|part| (part.surface, part.t)));
+            lobes.sweep.leaves_of[index as usize] = (first, lobes.layers.leaves.len() as u32);
+            below(lobes, leaf.base);
+            below(lobes, leaf.top);
+            if let Some(top) = leaf.top {
+                lobes.sweep.in_top[top.0 as usize] = true;
+            }
+            Some((leaf, spec.name))
+        }
+        Node::Scale { child, .. } => {
+            below(lobes, Some(child));
+            None
+        }
+        Node::Add(a, b) => {
+            below(lobes, Some(a));
+            below(lobes, Some(b));
+            None
+        }
+        Node::Select { then, otherwise, .. } => {
+            below(lobes, then);
+            below(lobes, otherwise);
+            None
+        }
+    };
+    while at != NONE {
+        let entry = lobes.sweep.entries[at as usize];
+        at = entry.next;
+        let Entry { layer, weight, .. } = entry;
+        let sweep = &mut lobes.sweep;
+        let fits = match tree.nodes[index as usize] {
+            Node::Scale { weight: factor, child } => {
+                let weight = sweep.times(tree, weight, factor);
+                sweep.send(n, Some(child), layer, weight)
+            }
+            Node::Add(a, b) => sweep.send(n, Some(a), layer, weight) && sweep.send(n, Some(b), layer, weight),
+            Node::Select { mask: Ints::Uniform(mask), then, otherwise } => {
+                sweep.send(n, if mask != 0 { then } else { otherwise }, layer, weight)
+            }
+            Node::Select { mask, then, otherwise } => {
+                let yes = then.map(|_| sweep.masked(n, weight, |lane| tree.int(mask, lane) != 0));
+                let no = otherwise.map(|_| sweep.masked(n, weight, |lane| tree.int(mask, lane) == 0));
+                yes.is_none_or(|w| sweep.send(n, then, layer, w)) && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
+            }
+            Node::Leaf { .. } => leaf.as_ref().is_none_or(|(leaf, name)| place(lobes, tree, leaf, name, layer, weight)),
+        };
+        if !fits {
+            drop_lane(&mut lobes.dropped, leaf.as_ref().map_or("too many lobes", |(_, name)| name), 0);
+        }
+    }
+}
+
+/// Places a leaf under a layer: adds its lobes, and sends the weight on to what it nests.
+fn place(lobes: &mut Lobes, tree: &Tree, leaf: &Leaf, name: &'static str, layer: u32, weight: Weight) -> bool {
+    let n = tree.lanes;
+    let mut fits = true;
+    if leaf.emits || leaf.hole {
+        lobes.sweep.emitters.push((weight, layer, leaf.hole));
+    }
+    fits &= lobes.sweep.send(n, leaf.top, layer, weight);
+    for part in leaf.parts.iter() {
+        fits &= add_lobe(lobes, tree, part.surface, layer, weight, leaf.tint, name);
+    }
+    if leaf.base.is_none() {
+        return fits;
+    }
+    for cover in leaf.covers.iter() {
+        let top = match (cover.surface, leaf.top) {
+            (Some(surface), _) => Top::Surface(surface),
+            // Holds the node until the steps are built.
+            (None, Some(NodeId(node))) => Top::Tree(node),
+            (None, None) => {
+                fits &= lobes.sweep.send(n, leaf.base, layer, weight);
+                continue;
+            }
+        };
+        if lobes.layers.list.len() >= MOST {
+            return false;
+        }
+        let depth = lobes.layers.depth(layer) + 1;
+        lobes.layers.list.push(Layer { parent: layer, depth, rule: cover.rule, top, t: cover.t });
+        let inner = lobes.layers.list.len() as u32 - 1;
+        let surfaces = &lobes.surfaces;
+        let weight = if cover.gate == NONE {
+            weight
+        } else {
+            let gate = surfaces.column(cover.gate);
+            lobes.sweep.masked(n, weight, |lane| gate[lane] != 0.0)
+        };
+        fits &= lobes.sweep.send(n, leaf.base, inner, weight);
+    }
+    fits
+}
+
+fn drop_lane(dropped: &mut Vec<Dropped>, closure: &'static str, lane: usize) {
+    let entry = Dropped { closure, lane: lane as u32 };
+    if dropped.len() < MOST_DROPPED && !dropped.contains(&entry) {
+        dropped.push(entry);
+    }
+}
+
+/// Adds one lobe; lanes whose weight or parameters are not numbers get weight 0 and are reported.
+fn add_lobe(
+    lobes: &mut Lobes,
+    tree: &Tree,
+    surface: u32,
+    layer: u32,
+    weight: Weight,
+    tint: Option<[Floats; 3]>,
+    name: &'static str,
+) -> bool {
+    if lobes.lobes.len() >= MOST {
+        return false;
+    }
+    let n = tree.lanes;
+    let start = lobes.weights.len();
+    let made = &lobes.surfaces.list[surface as usize];
+    for component in 0..3 {
+        for lane in 0..n {
+            let factor = tint.map_or(1.0, |t| tree.float(t[component], lane));
+            lobes.weights.push(lobes.sweep.get(weight, component, lane, n) * factor);
+        }
+    }
+    let mut any = false;
+    for lane in 0..n {
+        let at = [start + lane, start + n + lane, start + 2 * n + lane];
+        let gate = lobes.surfaces.gate(made, lane);
+        let w = at.map(|i| lobes.weights[i]);
+        // Lanes that did not run this closure have weight zero before the tint; their parameters do not matter.
+        let absent = (0..3).all(|c| lobes.sweep.get(weight, c, lane, n) == 0.0) || gate == 0.0;
+        let broken = gate.is_nan() || w.iter().any(|v| !v.is_finite());
+        if broken && !absent {
+            drop_lane(&mut lobes.dropped, name, lane);
+        }
+        if broken || absent {
+            at.map(|i| lobes.weights[i] = 0.0);
+        }
+        any |= !(broken || absent) && w != [0.0; 3];
+    }
+    if any {
+        lobes.lobes.push(Lobe { surface, layer });
+    } else {
+        lobes.weights.truncate(start);
+    }
+    true
+}
+
+/// Writes the albedo of every tree that lies on top of something as steps, children first.
+fn build_steps(sweep: &mut Sweep, layers: &mut Layers, surfaces: &mut Surfaces, table: &ClosureTable, tree: &Tree, root: NodeId) {
+    if !sweep.in_top.iter().any(|&needed| needed) {
+        return;
+    }
+    layers.steps.push(Step::Zero);
+    for index in 0..=root.0 as usize {
+        if !sweep.in_top[index] {
+            continue;
+        }
+        let of = |child: Option<NodeId>| child.map_or(0, |c| sweep.step_of[c.0 as usize]);
+        let step = match tree.nodes[index] {
+            Node::Scale { weight, child } => {
+                let largest = |lane| weight.iter().map(|&w| tree.float(w, lane).abs()).fold(0.0, f32::max);
+                Step::Scale(surfaces.push_column(largest), of(Some(child)))
+            }
+            Node::Add(a, b) => Step::Add(of(Some(a)), of(Some(b))),
+            Node::Select { mask, then, otherwise } => {
+                let column = surfaces.push_column(|lane| if tree.int(mask, lane) != 0 { 1.0 } else { 0.0 });
+                Step::Select(column, of(then), of(otherwise))
+            }
+            Node::Leaf { closure, first_param, param_count, .. } => {
+                let nested = |k: u32| match tree.params.get((first_param + k) as usize) {
+                    Some(Param::Closure(child)) if k < param_count => of(*child),
+                    _ => 0,
+                };
+                let (first, last) = sweep.leaves_of[index];
+                match table.get(closure).model {
+                    crate::lang::closures::Model::Layer => Step::Over(nested(0), nested(1)),
+                    crate::lang::closures::Model::Sheen => {
+                        let base = nested(0);
+                        layers.steps.push(Step::Leaves(first, last));
+                        Step::Over(layers.steps.len() as u32 - 1, base)
+                    }
+                    _ => Step::Leaves(first, last),
+                }
+            }
+        };
+        layers.steps.push(step);
+        sweep.step_of[index] = layers.steps.len() as u32 - 1;
+    }
+    for layer in &mut layers.list {
+        if let Top::Tree(node) = &mut layer.top {
+            *node = sweep.step_of[*node as usize];
+        }
+    }
+}
+
+/// Sums emission and holes, seen through the layers over them.
+fn emit(lobes: &mut Lobes) {
+    let n = lobes.lanes;
+    lobes.emission.resize(n);
+    lobes.holdout.resize(n, 0.0);
+    for column in [&mut lobes.emission.x, &mut lobes.emission.y, &mut lobes.emission.z, &mut lobes.holdout] {
+        column.fill(0.0);
+    }
+    for &(weight, layer, hole) in &lobes.sweep.emitters {
+        for lane in 0..n {
+            let through = if layer == NONE { 1.0 } else { lobes.layers.through_of(layer)[lane] };
+            let [x, y, z] = std::array::from_fn(|c| lobes.sweep.get(weight, c, lane, n) * through);
+            if !(x.is_finite() && y.is_finite() && z.is_finite()) {
+                drop_lane(&mut lobes.dropped, if hole { "holdout" } else { "emission" }, lane);
+            } else if hole {
+                lobes.holdout[lane] += (x + y + z) / 3.0;
+            } else {
+                let sum = lobes.emission.get(lane) + glam::Vec3::new(x, y, z);
+                lobes.emission.set(lane, sum);
+            }
+        }
+    }
+}
+
+/// Gives every lobe its probability: luminance of the weight's magnitude, albedo, and what the layers let through.
+fn pick(lobes: &mut Lobes) {
+    let n = lobes.lanes;
+    lobes.picks.clear();
+    lobes.picks.resize(n * lobes.lobes.len(), 0.0);
+    lobes.last.clear();
+    lobes.last.resize(n, NONE);
+    let mut total = std::mem::take(&mut lobes.side);
+    total.clear();
+    total.resize(n, 0.0);
+    for (index, lobe) in lobes.lobes.iter().enumerate() {
+        let out = &mut lobes.picks[index * n..(index + 1) * n];
+        surface_albedo(&lobes.surfaces, &lobes.surfaces.list[lobe.surface as usize], Side::View, out);
+        let weight = &lobes.weights[3 * n * index..3 * n * (index + 1)];
+        for lane in 0..n {
+            let through = if lobe.layer == NONE { 1.0 } else { lobes.layers.through_of(lobe.layer)[lane] };
+            let [x, y, z] = [weight[lane].abs(), weight[n + lane].abs(), weight[2 * n + lane].abs()];
+            // An albedo is an estimate: a lobe that may scatter is never excluded for it.
+            let value = (0.2126 * x + 0.7152 * y + 0.0722 * z) * out[lane].max(1e-3) * through;
+            out[lane] = value.min(1e30);
+            total[lane] += out[lane];
+        }
+    }
+    for index in 0..lobes.lobes.len() {
+        for lane in 0..n {
+            let pick = &mut lobes.picks[index * n + lane];
+            *pick = if total[lane] > 0.0 { *pick / total[lane] } else { 0.0 };
+            if *pick > 0.0 {
+                lobes.last[lane] = index as u32;
+            }
+        }
+    }
+    lobes.side = total;
+}
+
+/// The rule a layering keyword chooses.
+pub(super) fn rule_of(text: &str, fallback: Layering) -> Layering {
+    text.parse().unwrap_or(fallback)
+}

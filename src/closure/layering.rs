@@ -1,0 +1,295 @@
+//! Albedo scaling: what each layer lets through, for the layers of a batch in order, linear in their number.
+//!
+//! A `sheen` layer takes t a(w) with t the largest component of its tint and a the albedo of its lobe; a `layer(top, base)`
+//! takes the albedo of any tree: sums add, weights scale by their largest component, and a layer inside the top counts
+//! as its own top plus what that lets through of its base. The sum is clamped to 1. The albedo of each leaf is the
+//! one its model documents; transmitting lobes count too, as what they pass has left the base's light.
+
+use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes};
+use super::settings::Layering;
+use super::surfaces::{Kind, NONE, Surface, Surfaces, with_source};
+use crate::bsdf::fresnel::dielectric;
+use crate::bsdf::GAUSS;
+
+/// Which direction an albedo is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Side {
+    /// The viewer.
+    View,
+    /// The light of the last evaluation.
+    Light,
+    /// A fixed cosine to every normal, to integrate over.
+    Fixed(f32),
+}
+
+/// What a layer covers its base with.
+#[derive(Clone, Copy, Debug)]
+pub enum Top {
+    /// One lobe.
+    Surface(u32),
+    /// A tree: index of its operation.
+    Tree(u32),
+}
+
+/// One step of the albedo of a tree; operands are earlier steps.
+#[derive(Clone, Copy, Debug)]
+pub enum Step {
+    /// Nothing.
+    Zero,
+    /// The lobes `first..last` of [`Layers::leaves`].
+    Leaves(u32, u32),
+    /// A weight (offset of a column of largest components) times a step.
+    Scale(u32, u32),
+    /// The sum of two steps.
+    Add(u32, u32),
+    /// The first step where the column is not 0, else the second.
+    Select(u32, u32, u32),
+    /// The first step over the second.
+    Over(u32, u32),
+}
+
+/// One layer.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer {
+    /// The layer around it, or [`NONE`]; always an earlier one.
+    pub parent: u32,
+    /// How many layers lie over its base.
+    pub depth: u32,
+    /// How it scales.
+    pub rule: Layering,
+    /// What it consists of.
+    pub top: Top,
+    /// Offset in the surfaces' data of the column t.
+    pub t: u32,
+}
+
+/// All layers of a batch.
+#[derive(Debug, Default)]
+pub struct Layers {
+    /// The layers, outer ones first.
+    pub list: Vec<Layer>,
+    /// Steps of the albedos of trees, operands first.
+    pub steps: Vec<Step>,
+    /// Surfaces with the offsets of their t, for [`Step::Leaves`].
+    pub leaves: Vec<(u32, u32)>,
+    alpha_o: Vec<f32>,
+    through: Vec<f32>,
+    inverse_mean: Vec<f32>,
+    scales: Vec<f32>,
+    values: Vec<f32>,
+    scratch: Vec<f32>,
+}
+
+impl Layers {
+    /// Empties the store.
+    pub fn clear(&mut self) {
+        self.list.clear();
+        self.steps.clear();
+        self.leaves.clear();
+    }
+
+    /// The scale of a layer for the last evaluated direction.
+    pub fn scale_of<'a>(&'a self, layer: u32, ones: &'a [f32]) -> &'a [f32] {
+        column_or(&self.scales, layer, ones)
+    }
+
+    /// What a layer and those around it let through to the viewer.
+    pub fn through_of(&self, layer: u32) -> &[f32] {
+        let n = self.through.len() / self.list.len().max(1);
+        &self.through[layer as usize * n..(layer as usize + 1) * n]
+    }
+
+    /// How many layers lie over a lobe.
+    pub fn depth(&self, layer: u32) -> u32 {
+        self.list.get(layer as usize).map_or(0, |l| l.depth)
+    }
+
+    /// Computes what depends on the viewer alone.
+    pub fn prepare(&mut self, surfaces: &Surfaces, ones: &[f32]) {
+        let n = surfaces.lanes;
+        for store in [&mut self.alpha_o, &mut self.through, &mut self.inverse_mean, &mut self.scales] {
+            store.resize(n * self.list.len(), 1.0);
+        }
+        self.scratch.resize(n, 0.0);
+        self.run_steps(surfaces, Side::View);
+        for index in 0..self.list.len() {
+            let layer = self.list[index];
+            top_albedo(&layer, surfaces, Side::View, &self.values, &mut self.scratch);
+            let t = surfaces.column(layer.t);
+            let alpha = &mut self.alpha_o[index * n..(index + 1) * n];
+            for i in 0..n {
+                alpha[i] = (1.0 - t[i] * self.scratch[i]).clamp(0.0, 1.0);
+            }
+            let (before, here) = self.through.split_at_mut(index * n);
+            let parent = column_or(before, layer.parent, ones);
+            for i in 0..n {
+                here[i] = parent[i] * alpha[i];
+            }
+        }
+        if self.list.iter().any(|layer| layer.rule == Layering::Kelemen) {
+            self.prepare_means(surfaces);
+        }
+    }
+
+    fn prepare_means(&mut self, surfaces: &Surfaces) {
+        let n = surfaces.lanes;
+        self.inverse_mean.fill(0.0);
+        for index in 0..self.list.len() {
+            let layer = self.list[index];
+            if let Top::Surface(surface) = layer.top {
+                let surface = &surfaces.list[surface as usize];
+                let out = &mut self.inverse_mean[index * n..(index + 1) * n];
+                with_source!(surfaces, surface, |M, source| average_lanes::<M, _>(source, out));
+            }
+        }
+        for (x, weight) in GAUSS {
+            for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
+                self.add_mean(surfaces, t * t * t, 3.0 * weight * t.powi(5));
+            }
+        }
+        for index in 0..self.list.len() {
+            let t = surfaces.column(self.list[index].t);
+            let out = &mut self.inverse_mean[index * n..(index + 1) * n];
+            for i in 0..n {
+                out[i] = 1.0 / (1.0 - t[i] * out[i]).max(1e-3);
+            }
+        }
+    }
+
+    /// Adds one node of the mean albedo of the layers whose top is a tree.
+    fn add_mean(&mut self, surfaces: &Surfaces, cos: f32, weight: f32) {
+        let n = surfaces.lanes;
+        if self.steps.is_empty() {
+            return;
+        }
+        self.run_steps(surfaces, Side::Fixed(cos));
+        for index in 0..self.list.len() {
+            let layer = self.list[index];
+            if matches!(layer.top, Top::Tree(_)) {
+                top_albedo(&layer, surfaces, Side::Fixed(cos), &self.values, &mut self.scratch);
+                for (sum, a) in self.inverse_mean[index * n..].iter_mut().zip(&self.scratch) {
+                    *sum += weight * a;
+                }
+            }
+        }
+    }
+
+    /// Computes the scale of every layer for the light directions in the frames.
+    pub fn scale(&mut self, surfaces: &Surfaces, ones: &[f32]) {
+        let n = surfaces.lanes;
+        if !self.steps.is_empty() {
+            self.run_steps(surfaces, Side::Light);
+        }
+        for (index, layer) in self.list.iter().enumerate() {
+            if layer.rule != Layering::View {
+                top_albedo(layer, surfaces, Side::Light, &self.values, &mut self.scratch);
+            }
+            let (before, here) = self.scales.split_at_mut(index * n);
+            let columns = LayerColumns {
+                top_i: &self.scratch,
+                t: surfaces.column(layer.t),
+                alpha_o: &self.alpha_o[index * n..(index + 1) * n],
+                inverse_mean: &self.inverse_mean[index * n..(index + 1) * n],
+                parent: column_or(before, layer.parent, ones),
+            };
+            layer_lanes(layer.rule, columns, &mut here[..n]);
+        }
+    }
+
+    /// Computes the albedo of every tree that lies on top of something.
+    fn run_steps(&mut self, surfaces: &Surfaces, side: Side) {
+        let n = surfaces.lanes;
+        self.values.resize(n * self.steps.len(), 0.0);
+        for (index, step) in self.steps.iter().enumerate() {
+            let (before, here) = self.values.split_at_mut(index * n);
+            let here = &mut here[..n];
+            let value = |step: u32| &before[step as usize * n..(step as usize + 1) * n];
+            match *step {
+                Step::Zero => here.fill(0.0),
+                Step::Leaves(first, last) => {
+                    here.fill(0.0);
+                    for &(surface, t) in &self.leaves[first as usize..last as usize] {
+                        let surface = &surfaces.list[surface as usize];
+                        surface_albedo(surfaces, surface, side, &mut self.scratch);
+                        let t = surfaces.column(t);
+                        for i in 0..n {
+                            let there = surfaces.gate(surface, i) > 0.0;
+                            here[i] += if there { t[i] * self.scratch[i] } else { 0.0 };
+                        }
+                    }
+                }
+                Step::Scale(weight, child) => {
+                    let (weight, child) = (surfaces.column(weight), value(child));
+                    for i in 0..n {
+                        here[i] = if weight[i] > 0.0 { weight[i] * child[i] } else { 0.0 };
+                    }
+                }
+                Step::Add(a, b) => {
+                    let (a, b) = (value(a), value(b));
+                    for i in 0..n {
+                        here[i] = a[i] + b[i];
+                    }
+                }
+                Step::Select(mask, a, b) => {
+                    let (mask, a, b) = (surfaces.column(mask), value(a), value(b));
+                    for i in 0..n {
+                        here[i] = if mask[i] != 0.0 { a[i] } else { b[i] };
+                    }
+                }
+                Step::Over(a, b) => {
+                    let (a, b) = (value(a), value(b));
+                    for i in 0..n {
+                        let top = a[i].clamp(0.0, 1.0);
+                        here[i] = top + (1.0 - top) * b[i];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A layer's column, or the column of no layer.
+fn column_or<'a>(store: &'a [f32], layer: u32, ones: &'a [f32]) -> &'a [f32] {
+    let n = ones.len();
+    if layer == NONE { ones } else { &store[layer as usize * n..(layer as usize + 1) * n] }
+}
+
+/// The albedo of what a layer consists of, without its t.
+fn top_albedo(layer: &Layer, surfaces: &Surfaces, side: Side, values: &[f32], out: &mut [f32]) {
+    let n = surfaces.lanes;
+    match layer.top {
+        Top::Surface(surface) => surface_albedo(surfaces, &surfaces.list[surface as usize], side, out),
+        Top::Tree(step) => {
+            for (o, v) in out.iter_mut().zip(&values[step as usize * n..(step as usize + 1) * n]) {
+                *o = v.clamp(0.0, 1.0);
+            }
+        }
+    }
+}
+
+/// The albedo of one surface in every lane.
+pub fn surface_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &mut [f32]) {
+    if surface.kind == Kind::Transparent {
+        out.fill(1.0);
+        return;
+    }
+    let frame = &surfaces.frames()[surface.frame as usize];
+    let fixed;
+    let cos: &[f32] = match side {
+        Side::View => &frame.wo.z,
+        Side::Light => &frame.wi.z,
+        Side::Fixed(value) => {
+            fixed = vec![value; surfaces.lanes];
+            &fixed
+        }
+    };
+    if surface.kind.is_delta() {
+        for (lane, value) in out.iter_mut().enumerate() {
+            let eta = surfaces.param(surface, 0, lane);
+            let reflected = dielectric(cos[lane], eta);
+            *value = if surface.kind == Kind::Reflection { reflected } else { 1.0 - reflected };
+        }
+        return;
+    }
+    with_source!(surfaces, surface, |M, source| albedo_lanes::<M, _>(source, cos, out));
+}

@@ -1,0 +1,175 @@
+//! Sampling: pick one lobe a lane, sample it, weigh the direction by the whole mixture.
+
+use super::batch::{Triples, pick_lanes, sample_lanes};
+use super::lobes::{Evaluation, Lobes};
+use super::surfaces::{Kind, NONE, with_source};
+use crate::bsdf::specular::{Specular, reflection, refraction};
+use crate::math::columns::Column3;
+use crate::math::frame::Frame;
+
+/// What happened in a lane.
+pub mod event {
+    /// Absorbed.
+    pub const NONE: u8 = 0;
+    /// Scattered by a diffuse or sheen lobe.
+    pub const DIFFUSE: u8 = 1;
+    /// Scattered by a rough boundary.
+    pub const GLOSSY: u8 = 2;
+    /// Reflected by a mirror.
+    pub const DELTA_REFLECT: u8 = 3;
+    /// Refracted by a smooth boundary.
+    pub const DELTA_REFRACT: u8 = 4;
+    /// Passed straight on.
+    pub const STRAIGHT: u8 = 5;
+}
+
+/// One sampled direction a lane.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// Direction to the light, world, unit.
+    pub wi: Column3,
+    /// f |cos| / pdf of the whole mixture.
+    pub weight: Column3,
+    /// Density (solid angle, 1/sr); for lobes of one direction the discrete probability; 0 = absorbed.
+    pub pdf: Vec<f32>,
+    /// What happened, see [`event`].
+    pub event: Vec<u8>,
+}
+
+/// Scratch memory of sampling.
+#[derive(Debug, Default)]
+pub struct SampleScratch {
+    left: Vec<f32>,
+    chosen: Vec<u32>,
+    xi: Column3,
+    parts: Vec<f32>,
+    evaluation: Evaluation,
+}
+
+impl Lobes {
+    /// Samples one direction a lane from three numbers in [0, 1) a lane.
+    pub fn sample(&mut self, xi: &Column3, out: &mut Samples) {
+        let n = self.lanes;
+        for column in [&mut out.wi, &mut out.weight] {
+            column.resize(n);
+            for c in [&mut column.x, &mut column.y, &mut column.z] {
+                c.fill(0.0);
+            }
+        }
+        out.pdf.clear();
+        out.pdf.resize(n, 0.0);
+        out.event.clear();
+        out.event.resize(n, event::NONE);
+        self.choose(xi);
+        self.draw(&mut out.wi);
+        let mut evaluation = std::mem::take(&mut self.scratch.evaluation);
+        self.evaluate(&out.wi, &mut evaluation);
+        for lane in 0..n {
+            self.weigh(lane, &evaluation, out);
+        }
+        self.scratch.evaluation = evaluation;
+    }
+
+    /// Picks a lobe in every lane by the third number, whose remainder serves as a fresh one.
+    fn choose(&mut self, xi: &Column3) {
+        let n = self.lanes;
+        let scratch = &mut self.scratch;
+        scratch.xi.clone_from(xi);
+        scratch.left.clone_from(&xi.z);
+        scratch.chosen.clear();
+        scratch.chosen.resize(n, NONE);
+        scratch.parts.clear();
+        scratch.parts.resize(n, 0.0);
+        for index in 0..self.lobes.len() {
+            let pick = &self.picks[index * n..(index + 1) * n];
+            pick_lanes(index as u32, pick, &mut scratch.left, &mut scratch.xi.z, &mut scratch.chosen);
+        }
+        for lane in 0..n {
+            // Rounding may leave a number just behind the last part.
+            if scratch.chosen[lane] == NONE {
+                scratch.chosen[lane] = self.last[lane];
+                scratch.xi.z[lane] = 0.999_999_94;
+            }
+        }
+    }
+
+    /// Draws the directions, lobe by lobe; lobes that no lane chose cost nothing.
+    fn draw(&mut self, wi: &mut Column3) {
+        let SampleScratch { chosen, xi, parts, left, .. } = &mut self.scratch;
+        // The remainders are done with: their column now counts, by lobe, whether a lane chose it.
+        left.clear();
+        left.resize(self.lobes.len(), 0.0);
+        for &lobe in chosen.iter().filter(|&&lobe| lobe != NONE) {
+            left[lobe as usize] = 1.0;
+        }
+        for index in 0..self.lobes.len() {
+            if left[index] == 0.0 {
+                continue;
+            }
+            let surface = &self.surfaces.list[self.lobes[index].surface as usize];
+            if surface.kind.is_delta() {
+                for lane in (0..self.lanes).filter(|&lane| chosen[lane] == index as u32) {
+                    if surface.kind == Kind::Transparent {
+                        wi.set(lane, -self.wo.get(lane));
+                        parts[lane] = 1.0;
+                        continue;
+                    }
+                    let frame = &self.surfaces.frames()[surface.frame as usize];
+                    let (local, eta) = (frame.wo.get(lane), self.surfaces.param(surface, 0, lane));
+                    let mirror = surface.kind == Kind::Reflection;
+                    let Specular { wi: to, part } = if mirror { reflection(local, eta) } else { refraction(local, eta) };
+                    let axes = Frame {
+                        tangent: frame.tangent.get(lane),
+                        bitangent: frame.bitangent.get(lane),
+                        normal: frame.normal.get(lane),
+                    };
+                    wi.set(lane, axes.to_world(to));
+                    parts[lane] = part;
+                }
+                continue;
+            }
+            let frame = &self.surfaces.frames()[surface.frame as usize];
+            let wo = Triples::of(&frame.wo);
+            let (axes, xi, mine) = (frame.axes(), Triples::of(xi), (chosen.as_slice(), index as u32));
+            let (x, y, z) = (&mut wi.x, &mut wi.y, &mut wi.z);
+            with_source!(self.surfaces, surface, |M, source| sample_lanes::<M, _>(source, wo, axes, xi, mine, x, y, z));
+        }
+    }
+
+    /// Fills the weight, density and event of a lane whose direction is drawn and evaluated.
+    fn weigh(&self, lane: usize, evaluation: &Evaluation, out: &mut Samples) {
+        let chosen = self.scratch.chosen[lane];
+        if chosen == NONE {
+            return;
+        }
+        let (n, lobe) = (self.lanes, self.lobes[chosen as usize]);
+        let kind = self.surfaces.list[lobe.surface as usize].kind;
+        let (weight, pdf) = if kind.is_delta() {
+            let side = self.side[lane];
+            let visible = match kind {
+                Kind::Reflection => side > 0.0,
+                Kind::Refraction => side < 0.0,
+                _ => true,
+            };
+            let pick = self.picks[chosen as usize * n + lane];
+            let scale = self.layers.scale_of(lobe.layer, &self.ones)[lane];
+            let part = if visible { self.scratch.parts[lane] * scale / pick } else { 0.0 };
+            let at = 3 * n * chosen as usize + lane;
+            (glam::Vec3::new(self.weights[at], self.weights[at + n], self.weights[at + 2 * n]) * part, pick)
+        } else {
+            let pdf = evaluation.pdf[lane];
+            (evaluation.f_cos.get(lane) * (1.0 / pdf.max(f32::MIN_POSITIVE)), pdf)
+        };
+        if pdf > 0.0 && pdf.is_finite() && weight.is_finite() && weight != glam::Vec3::ZERO {
+            out.weight.set(lane, weight);
+            out.pdf[lane] = pdf;
+            out.event[lane] = match kind {
+                Kind::Reflection => event::DELTA_REFLECT,
+                Kind::Refraction => event::DELTA_REFRACT,
+                Kind::Transparent => event::STRAIGHT,
+                Kind::Microfacet { .. } => event::GLOSSY,
+                _ => event::DIFFUSE,
+            };
+        }
+    }
+}

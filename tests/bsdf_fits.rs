@@ -1,0 +1,57 @@
+//! The albedo polynomials of the two selectable shadowing terms, made anew by quadrature.
+
+use velour::bsdf::sheen::albedo::{CURVE, MIN_FITTED_ROUGHNESS, SURFACE_COLUMNS, Surface};
+use velour::bsdf::sheen::fits::{ALBEDO_ASHIKHMIN, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT};
+use velour::bsdf::sheen::reference::{self, Model};
+
+
+/// Interpolates the albedo, integrated numerically, at the Chebyshev nodes of both axes.
+fn fit(model: Model, soft: bool) -> Surface {
+    let node = |k: usize, n: usize| (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).cos();
+    let rows: [[f64; SURFACE_COLUMNS]; CURVE] = std::array::from_fn(|i| {
+        let t = MIN_T + (1.0 - MIN_T) * 0.5 * (1.0 + node(i, CURVE));
+        std::array::from_fn(|j| {
+            let s = 0.5 * (1.0 + node(j, SURFACE_COLUMNS));
+            let r = ((1.0 - s) * f64::from(MIN_FITTED_ROUGHNESS).ln()).exp();
+            // What reflects more than arrives is cut, as a scale below zero would be.
+            reference::albedo(model, soft, t * t * t, r, 24).min(1.2)
+        })
+    });
+    let along = |k: usize, m: usize, n: usize| (std::f64::consts::PI * k as f64 * (m as f64 + 0.5) / n as f64).cos();
+    let share = |k: usize, n: usize| if k == 0 { 1.0 / n as f64 } else { 2.0 / n as f64 };
+    std::array::from_fn(|a| {
+        std::array::from_fn(|b| {
+            let mut sum = 0.0;
+            for (i, row) in rows.iter().enumerate() {
+                for (j, value) in row.iter().enumerate() {
+                    sum += value * along(a, i, CURVE) * along(b, j, SURFACE_COLUMNS);
+                }
+            }
+            (sum * share(a, CURVE) * share(b, SURFACE_COLUMNS)) as f32
+        })
+    })
+}
+
+const MIN_T: f64 = 0.046_415_888_336_127_79;
+
+/// Prints the constants when VELOUR_PRINT_FITS is set.
+#[test]
+fn constants_are_what_quadrature_gives() {
+    let cases = [
+        ("ALBEDO_PUBLISHED_SOFT", Model::Published, true, ALBEDO_PUBLISHED_SOFT),
+        ("ALBEDO_PUBLISHED", Model::Published, false, ALBEDO_PUBLISHED),
+        ("ALBEDO_ASHIKHMIN", Model::Ashikhmin, false, ALBEDO_ASHIKHMIN),
+    ];
+    for (name, model, soft, constants) in cases {
+        let fitted = fit(model, soft);
+        if std::env::var_os("VELOUR_PRINT_FITS").is_some() {
+            println!("{name} {fitted:?}");
+            continue;
+        }
+        for (row, expected) in fitted.iter().zip(&constants) {
+            for (a, b) in row.iter().zip(expected) {
+                assert!((a - b).abs() < 2e-6, "{name}: {a} {b}");
+            }
+        }
+    }
+}
