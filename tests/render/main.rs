@@ -1,0 +1,6 @@
+//! The renderer against answers known exactly, against itself, and against bad input.
+
+mod determinism;
+mod exact;
+mod materials;
+mod speed;
