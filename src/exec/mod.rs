@@ -63,13 +63,27 @@ impl Points {
     pub fn resize(&mut self, len: usize) {
         self.len = len;
         for column in [
-            &mut self.p, &mut self.i, &mut self.n, &mut self.ng, &mut self.dpdu, &mut self.dpdv, &mut self.dpdx,
-            &mut self.dpdy, &mut self.didx, &mut self.didy,
+            &mut self.p,
+            &mut self.i,
+            &mut self.n,
+            &mut self.ng,
+            &mut self.dpdu,
+            &mut self.dpdv,
+            &mut self.dpdx,
+            &mut self.dpdy,
+            &mut self.didx,
+            &mut self.didy,
         ] {
             column.resize(len);
         }
         for column in [
-            &mut self.u, &mut self.v, &mut self.dudx, &mut self.dudy, &mut self.dvdx, &mut self.dvdy, &mut self.time,
+            &mut self.u,
+            &mut self.v,
+            &mut self.dudx,
+            &mut self.dudy,
+            &mut self.dvdx,
+            &mut self.dvdy,
+            &mut self.time,
             &mut self.surface_area,
         ] {
             column.resize(len, 0.0);
@@ -88,7 +102,11 @@ pub enum Emission {
     /// `power / (pi * surfacearea())`.
     Power(f32),
     /// A sky that is brighter upward: `base + gain * max(I.y, 0)^sharpness`.
-    Sky { base: f32, gain: f32, sharpness: f32 },
+    Sky {
+        base: f32,
+        gain: f32,
+        sharpness: f32,
+    },
     /// `2 u`, a light that varies over its surface.
     Ramp,
     /// Not a number.

@@ -168,7 +168,8 @@ impl Accel {
         let magnitude = shapes.iter().map(|s| s.c.w).collect();
         let bounds: Vec<Aabb> = shapes.iter().map(Packed::bounds).collect();
         // Pre-splitting would name a primitive twice, which the reordering below does not mind.
-        let quality = if shapes.len() > 200_000 { BvhBuildParams::medium_build() } else { BvhBuildParams::slow_build() };
+        let quality =
+            if shapes.len() > 200_000 { BvhBuildParams::medium_build() } else { BvhBuildParams::slow_build() };
         let quality = BvhBuildParams { pre_split: false, ..quality };
         let hierarchy = build_cwbvh(&bounds, quality, &mut Duration::default());
         // In leaf order, so that the primitives of a leaf lie side by side.

@@ -182,7 +182,8 @@ impl Wave {
             }
             path.throughput = throughput;
             let hit = &mut path.hit;
-            hit.origin = world.accel.leave(self.shading.points.p.get(lane), self.shading.points.ng.get(lane), wi, hit.primitive);
+            hit.origin =
+                world.accel.leave(self.shading.points.p.get(lane), self.shading.points.ng.get(lane), wi, hit.primitive);
             hit.direction = wi;
             path.from = hit.primitive;
             hit.radius += hit.spread * hit.t;

@@ -25,7 +25,15 @@ impl RayCamera {
         let upward = across.cross(camera.direction).normalize() * k;
         let (inverse_width, inverse_height) = (1.0 / width as f32, 1.0 / height as f32);
         let pixel_solid_angle = inverse_width * inverse_height * across.length() * upward.length();
-        RayCamera { eye: camera.eye, direction: camera.direction, across, upward, inverse_width, inverse_height, pixel_solid_angle }
+        RayCamera {
+            eye: camera.eye,
+            direction: camera.direction,
+            across,
+            upward,
+            inverse_width,
+            inverse_height,
+            pixel_solid_angle,
+        }
     }
 
     /// Where every ray begins.

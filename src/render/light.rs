@@ -132,8 +132,12 @@ fn toward(to: Vec3, normal: Vec3, scale: f32) -> Option<LightSample> {
     let direction = to / distance;
     let cos_area = normal.dot(direction).abs() * scale;
     let pdf_solid_angle = distance * distance / cos_area;
-    (distance > 0.0 && pdf_solid_angle.is_finite())
-        .then_some(LightSample { direction, distance, pdf_solid_angle, ..NO_SAMPLE })
+    (distance > 0.0 && pdf_solid_angle.is_finite()).then_some(LightSample {
+        direction,
+        distance,
+        pdf_solid_angle,
+        ..NO_SAMPLE
+    })
 }
 
 /// Density of a uniform direction in the cone that a sphere fills, from the square of the cone's sine.

@@ -29,7 +29,10 @@ pub fn check(path: &Path) -> Result<Format, String> {
         "hdr" => Format::Hdr,
         _ => {
             let shown = path.display();
-            return Err(format!("cannot tell the image format of `{shown}`; known extensions: {}", EXTENSIONS.join(", ")));
+            return Err(format!(
+                "cannot tell the image format of `{shown}`; known extensions: {}",
+                EXTENSIONS.join(", ")
+            ));
         }
     };
     let folder = folder_of(path);
@@ -43,9 +46,8 @@ pub fn check(path: &Path) -> Result<Format, String> {
 pub fn write(image: &Image, path: &Path) -> Result<(), String> {
     let format = check(path)?;
     let temporary = temporary_name(path);
-    let written = write_to(image, format, &temporary).and_then(|()| {
-        std::fs::rename(&temporary, path).map_err(|e| e.to_string())
-    });
+    let written =
+        write_to(image, format, &temporary).and_then(|()| std::fs::rename(&temporary, path).map_err(|e| e.to_string()));
     written.map_err(|e| {
         // A failure to remove is not worth hiding the first failure for.
         let _ = std::fs::remove_file(&temporary);

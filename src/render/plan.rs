@@ -96,7 +96,8 @@ impl Plan {
         let lit = |p: &&crate::scene::Primitive| is_light(objects[p.object as usize].material);
         let lights = if sampling { scene.geometry.primitives.iter().filter(lit).count() } else { 0 };
         let background = scene.background.map(|b| (b, &scene.materials[b.material as usize].surface));
-        let constant = background.is_none_or(|(_, g)| g.emission_is_uniform().is_some() || same_all_over(g) || !g.can_emit());
+        let constant =
+            background.is_none_or(|(_, g)| g.emission_is_uniform().is_some() || same_all_over(g) || !g.can_emit());
         let background_table = match background {
             // A constant sky is what scattering samples already reach best; sampling it as well only adds noise.
             Some((b, _)) if sampling && !constant && b.resolution > 0 => b.resolution.max(32),
@@ -110,18 +111,40 @@ impl Plan {
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let or = |yes: bool, a: &'static str, b: &'static str| if yes { a } else { b };
-        writeln!(f, "lights: {}", match self.lights {
-            0 => "none, so no light sampling and no shadow rays to lights".to_owned(),
-            n => format!("{n} primitives are sampled, one a bounce"),
-        })?;
-        writeln!(f, "background: {}", match self.background_table {
-            0 => or(self.constant_background, "constant or absent, known exactly, not sampled", "reached by scattering alone").to_owned(),
-            n => format!("varies, sampled by a table of {n} x {n}"),
-        })?;
-        writeln!(f, "ray cones: {}", or(self.cones, "carried, derivatives are read", "not carried, no derivative is read"))?;
+        writeln!(
+            f,
+            "lights: {}",
+            match self.lights {
+                0 => "none, so no light sampling and no shadow rays to lights".to_owned(),
+                n => format!("{n} primitives are sampled, one a bounce"),
+            }
+        )?;
+        writeln!(
+            f,
+            "background: {}",
+            match self.background_table {
+                0 => or(
+                    self.constant_background,
+                    "constant or absent, known exactly, not sampled",
+                    "reached by scattering alone"
+                )
+                .to_owned(),
+                n => format!("varies, sampled by a table of {n} x {n}"),
+            }
+        )?;
+        writeln!(
+            f,
+            "ray cones: {}",
+            or(self.cones, "carried, derivatives are read", "not carried, no derivative is read")
+        )?;
         for (i, m) in self.materials.iter().enumerate() {
             let uv = or(m.needs.uv, "uv", "no uv");
-            writeln!(f, "material {i}: {}, {}, {uv}", or(m.emits, "emits", "dark"), or(m.scatters, "scatters", "ends paths"))?;
+            writeln!(
+                f,
+                "material {i}: {}, {}, {uv}",
+                or(m.emits, "emits", "dark"),
+                or(m.scatters, "scatters", "ends paths")
+            )?;
         }
         Ok(())
     }

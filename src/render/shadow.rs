@@ -93,7 +93,12 @@ impl Wave {
                 for (lane, &(_, i)) in batch.iter().enumerate() {
                     let ray = &queue.rays[i as usize];
                     let radiance = self.shading.emission().get(lane);
-                    gather(&mut self.paths[ray.path as usize], ray.contribution * radiance, material, &mut self.dropped);
+                    gather(
+                        &mut self.paths[ray.path as usize],
+                        ray.contribution * radiance,
+                        material,
+                        &mut self.dropped,
+                    );
                 }
             }
         }

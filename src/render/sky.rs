@@ -102,7 +102,8 @@ mod tests {
             let (direction, pdf) = table.sample(r[0], r[1]);
             assert!((direction.length() - 1.0).abs() < 1e-5);
             // A direction on a cell's edge may round into its neighbour, so agreement is asked of the mean.
-            inverse += 1.0 / f64::from(if (table.pdf(direction) - pdf).abs() < 1e-3 * pdf { pdf } else { table.pdf(direction) });
+            inverse += 1.0
+                / f64::from(if (table.pdf(direction) - pdf).abs() < 1e-3 * pdf { pdf } else { table.pdf(direction) });
         }
         // The mean of 1/pdf is the solid angle of all directions.
         assert!((inverse / f64::from(n) / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.02);

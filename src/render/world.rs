@@ -193,7 +193,9 @@ pub fn fill_sky(shading: &mut Shading, lane: usize, direction: Vec3, ray_type: i
     points.surface_area[lane] = 4.0 * PI;
     points.backfacing[lane] = 0;
     points.ray_type[lane] = ray_type;
-    for column in [&mut points.dpdu, &mut points.dpdv, &mut points.dpdx, &mut points.dpdy, &mut points.didx, &mut points.didy] {
+    for column in
+        [&mut points.dpdu, &mut points.dpdv, &mut points.dpdx, &mut points.dpdy, &mut points.didx, &mut points.didy]
+    {
         column.set(lane, Vec3::ZERO);
     }
 }

@@ -2,9 +2,7 @@
 
 use super::error::{Place, SceneError};
 use super::geometry::{Geometry, Shape};
-use super::group::{
-    Connection, GroupCompiler, GroupSpec, Layer, ParamHints, ParamType, ParamValue, Usage, Values,
-};
+use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamHints, ParamType, ParamValue, Usage, Values};
 use super::load::{Background, Camera, Material, Options, Scene};
 use super::mesh::{MaterialNames, add_mesh};
 use super::nearest::nearest;
@@ -167,7 +165,8 @@ impl<'c> Builder<'c> {
         let names = MaterialNames { by_name: &self.by_name, last };
         let degenerate = add_mesh(&mut self.scene.geometry, &path, &names, &place)?;
         if degenerate > 0 {
-            let warning = format!("{place}: warning: {degenerate} triangles of `{filename}` have no area and are left out");
+            let warning =
+                format!("{place}: warning: {degenerate} triangles of `{filename}` have no area and are left out");
             self.scene.warnings.push(warning);
         }
         Ok(())
@@ -196,13 +195,23 @@ impl<'c> Builder<'c> {
                 .with_help("write `shader NAME LAYER;` in it, or a <Shader name=\"\" layer=\"\"/>"));
         }
         if let Some(param) = pending.first() {
-            return Err(SceneError::at(param.place.clone(), format!("parameter `{}` has no shader after it", param.name))
-                .with_help("a parameter belongs to the next shader of the group"));
+            return Err(SceneError::at(
+                param.place.clone(),
+                format!("parameter `{}` has no shader after it", param.name),
+            )
+            .with_help("a parameter belongs to the next shader of the group"));
         }
         check_connections(&layers, &connections)?;
         let search = self.folders.clone();
-        let spec =
-            GroupSpec { usage, name: name.unwrap_or("group").into(), is_light, layers, connections, place: e.place(), search };
+        let spec = GroupSpec {
+            usage,
+            name: name.unwrap_or("group").into(),
+            is_light,
+            layers,
+            connections,
+            place: e.place(),
+            search,
+        };
         let group = self.compiler.compile(&spec).map_err(|error| error.or_at(&spec.layers[0].place))?;
         self.add_material(name, spec, group);
         Ok(())
@@ -224,8 +233,13 @@ impl<'c> Builder<'c> {
         if let Some(name) = name {
             self.by_name.insert(name.to_owned(), self.scene.materials.len() as u32);
         }
-        let material =
-            Material { name: spec.name, surface: group, displacement: None, is_light: spec.is_light, place: spec.place };
+        let material = Material {
+            name: spec.name,
+            surface: group,
+            displacement: None,
+            is_light: spec.is_light,
+            place: spec.place,
+        };
         self.scene.materials.push(material);
     }
 }
@@ -266,9 +280,9 @@ fn group_child(
     pending: &mut Vec<ParamValue>,
 ) -> Result<(), SceneError> {
     match e.tag() {
-        "Parameter" => pending.extend(e.attributes().map(|a| {
-            parameter_value(a.name(), a.value(), e.place_at(a.range().start))
-        })),
+        "Parameter" => {
+            pending.extend(e.attributes().map(|a| parameter_value(a.name(), a.value(), e.place_at(a.range().start))))
+        }
         "Shader" => {
             e.check_attributes(&["type", "name", "layer"])?;
             let shader = e.required("name")?.to_owned();
@@ -303,12 +317,16 @@ fn parameter_value(name: &str, text: &str, place: Place) -> ParamValue {
     };
     let (word, rest) = text.split_once(' ').unwrap_or(("", text));
     let number = rest.trim();
-    if word == "int" && let Ok(value) = number.parse() {
+    if word == "int"
+        && let Ok(value) = number.parse()
+    {
         return plain(ParamType::Int, Values::Ints(vec![value]));
     }
     if let Some(kind) = ParamType::from_name(word).filter(|k| !matches!(k, ParamType::Int | ParamType::String)) {
         let floats: Result<Vec<f32>, _> = number.split_whitespace().map(str::parse).collect();
-        if let Ok(floats) = floats && floats.len() == kind.components() {
+        if let Ok(floats) = floats
+            && floats.len() == kind.components()
+        {
             return plain(kind, Values::Floats(floats));
         }
     }
@@ -327,7 +345,9 @@ fn check_connections(layers: &[Layer], connections: &[Connection]) -> Result<(),
         };
         if find(&c.source_layer)? >= find(&c.target_layer)? {
             let message = format!("layer `{}` does not come before layer `{}`", c.source_layer, c.target_layer);
-            return Err(SceneError::at(c.place.clone(), message).with_help("values flow from earlier layers to later ones"));
+            return Err(
+                SceneError::at(c.place.clone(), message).with_help("values flow from earlier layers to later ones")
+            );
         }
     }
     Ok(())

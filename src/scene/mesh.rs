@@ -28,7 +28,8 @@ pub fn add_mesh(
     place: &Place,
 ) -> Result<usize, SceneError> {
     let fail = |what: String| SceneError::at(place.clone(), format!("mesh `{}`: {what}", path.display()));
-    let options = tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
+    let options =
+        tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
     let (models, materials) = tobj::load_obj(path, &options).map_err(|e| fail(e.to_string()))?;
     // A missing MTL is no mistake: OBJ files are often passed on without theirs.
     let materials = materials.unwrap_or_default();

@@ -91,8 +91,7 @@ impl<'t> Parser<'t> {
             word if ParamType::from_name(word).is_some() => self.parameter(word, place),
             word => {
                 let shown = if word.is_empty() { self.until(&[' ', '\n', ';', ',']) } else { word };
-                let known: Vec<&str> =
-                    ["param", "shader", "connect"].into_iter().chain(ParamType::NAMES).collect();
+                let known: Vec<&str> = ["param", "shader", "connect"].into_iter().chain(ParamType::NAMES).collect();
                 let error = SceneError::at(place, format!("unknown statement `{shown}` in a shader group"));
                 Err(error.with_help(match nearest(shown, &known) {
                     Some(name) => format!("did you mean `{name}`?"),
@@ -216,19 +215,19 @@ impl<'t> Parser<'t> {
         let length = match digits {
             "" => None,
             // The bound keeps a slip of the pen from asking for all memory.
-            _ => Some(digits.parse().ok().filter(|n| (1..=1 << 24).contains(n)).ok_or_else(|| {
-                SceneError::at(place, format!("`{digits}` is no array length"))
-            })?),
+            _ => Some(
+                digits
+                    .parse()
+                    .ok()
+                    .filter(|n| (1..=1 << 24).contains(n))
+                    .ok_or_else(|| SceneError::at(place, format!("`{digits}` is no array length")))?,
+            ),
         };
         self.take_char(']');
         Ok(Some(length))
     }
 
-    fn values(
-        &mut self,
-        kind: ParamType,
-        array: Option<Option<usize>>,
-    ) -> Result<(Values, Option<usize>), SceneError> {
+    fn values(&mut self, kind: ParamType, array: Option<Option<usize>>) -> Result<(Values, Option<usize>), SceneError> {
         let components = kind.components();
         let limit = match array {
             None => components,
@@ -318,7 +317,8 @@ impl<'t> Parser<'t> {
                 return Err(SceneError::at(place, format!("unknown hint `{kind} {name}`"))
                     .with_help("known hints: int lockgeom, int interpolated, int interactive"));
             }
-            let value = if self.take_char('=') { self.until(&[' ', ',', ']', ';', '\n']).parse::<i32>().ok() } else { None };
+            let value =
+                if self.take_char('=') { self.until(&[' ', ',', ']', ';', '\n']).parse::<i32>().ok() } else { None };
             let Some(value) = value else {
                 return Err(SceneError::at(place, format!("hint `{name}` needs `= INTEGER`")));
             };

@@ -2,5 +2,6 @@
 
 mod determinism;
 mod exact;
+mod files;
 mod materials;
 mod speed;

@@ -29,7 +29,11 @@ impl GroupCompiler for Materials {
             "ramp" => Group { emission: Emission::Ramp, ..dark },
             "sky" => Group { emission: Emission::Uniform(color("c", 0.3)), ..dark },
             "sun" => Group {
-                emission: Emission::Sky { base: number("base", 0.1), gain: 20.0, sharpness: number("sharpness", 100.0) },
+                emission: Emission::Sky {
+                    base: number("base", 0.1),
+                    gain: 20.0,
+                    sharpness: number("sharpness", 100.0),
+                },
                 ..dark
             },
             "nan" => Group { albedo: color("Cs", 0.5), emission: Emission::NotANumber, ..dark },
