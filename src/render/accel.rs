@@ -8,10 +8,15 @@
 //! no tolerance is needed. Triangles are tested by the signs of three edge functions, computed so that two triangles
 //! compute the same number for the edge they share, of opposite sign: no ray slips between them.
 
+use super::few::{self, Few};
+use super::shadow::ShadowRay;
+use super::wave::Path;
 use crate::scene::{Geometry, Primitive, Shape};
 use glam::{Vec3, Vec3A, Vec4};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::ray::{Ray, RayHit};
@@ -153,57 +158,128 @@ pub struct Hit {
     pub v: f32,
 }
 
+/// Up to this many blocks of eight, testing all primitives is faster than a hierarchy.
+const MOST_BLOCKS: usize = 3;
+
+/// How rays find what they hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Eight primitives at a time, no hierarchy; only for a few spheres and quads.
+    Few,
+    /// A hierarchy of eight compressed children a node.
+    Wide,
+    /// A hierarchy of two children a node.
+    Binary,
+}
+
+enum Hierarchy {
+    Few(Few),
+    Wide(CwBvh),
+    Binary(Bvh2),
+}
+
 /// Geometry, prepared for rays.
 pub struct Accel {
     shapes: Vec<Packed>,
-    hierarchy: CwBvh,
+    hierarchy: Hierarchy,
     magnitude: Vec<f32>,
 }
 
 impl Accel {
-    /// Prepares `geometry`.
+    /// Prepares `geometry` by the method that measured best for its size.
     pub fn new(geometry: &Geometry) -> Self {
+        match Few::new(geometry, MOST_BLOCKS) {
+            Some(_) => Self::with(geometry, Method::Few),
+            None => Self::with(geometry, Method::Wide),
+        }
+    }
+
+    /// Prepares `geometry` by a given method; `Few` falls back to `Wide` where it does not apply.
+    pub fn with(geometry: &Geometry, method: Method) -> Self {
         let pack = |(id, p): (usize, &Primitive)| Packed::new(&p.shape, id as u32);
         let shapes: Vec<Packed> = geometry.primitives.iter().enumerate().map(pack).collect();
         let magnitude = shapes.iter().map(|s| s.c.w).collect();
+        let few = if method == Method::Few { Few::new(geometry, usize::MAX) } else { None };
+        if let Some(few) = few {
+            return Accel { shapes, hierarchy: Hierarchy::Few(few), magnitude };
+        }
         let bounds: Vec<Aabb> = shapes.iter().map(Packed::bounds).collect();
-        // Pre-splitting would name a primitive twice, which the reordering below does not mind.
-        let quality =
-            if shapes.len() > 200_000 { BvhBuildParams::medium_build() } else { BvhBuildParams::slow_build() };
+        let large = shapes.len() > 200_000;
+        let quality = if large { BvhBuildParams::medium_build() } else { BvhBuildParams::slow_build() };
+        // Bounds alone cannot be split.
         let quality = BvhBuildParams { pre_split: false, ..quality };
-        let hierarchy = build_cwbvh(&bounds, quality, &mut Duration::default());
+        let (hierarchy, order) = if method == Method::Binary {
+            let mut bvh = build_bvh2(&bounds, quality, &mut Duration::default());
+            let order = std::mem::take(&mut bvh.primitive_indices);
+            (Hierarchy::Binary(bvh), order)
+        } else {
+            let mut bvh = build_cwbvh(&bounds, quality, &mut Duration::default());
+            let order = std::mem::take(&mut bvh.primitive_indices);
+            (Hierarchy::Wide(bvh), order)
+        };
         // In leaf order, so that the primitives of a leaf lie side by side.
-        let shapes = hierarchy.primitive_indices.iter().map(|&i| shapes[i as usize]).collect();
+        let shapes = order.iter().map(|&i| shapes[i as usize]).collect();
         Accel { shapes, hierarchy, magnitude }
     }
 
-    /// The closest hit, not counting `skip`, the primitive that the ray starts on.
+    /// Stores the closest hit of each active path.
+    pub fn intersect(&self, paths: &mut [Path], active: &[u32]) {
+        if let Hierarchy::Few(few) = &self.hierarchy {
+            return few::intersect(few, paths, active);
+        }
+        for &i in active {
+            let path = &mut paths[i as usize];
+            let hit = self.closest(path.hit.origin, path.hit.direction, path.from);
+            (path.hit.t, path.hit.primitive, path.hit.u, path.hit.v) = (hit.t, hit.primitive, hit.u, hit.v);
+        }
+    }
+
+    /// Keeps in `clear` the numbers of the rays that nothing stops short of their target.
+    pub fn unoccluded(&self, rays: &[ShadowRay], clear: &mut Vec<u32>) {
+        clear.clear();
+        if let Hierarchy::Few(few) = &self.hierarchy {
+            return few::unoccluded(few, rays, clear);
+        }
+        clear.extend((0..rays.len() as u32).filter(|&i| !self.occluded(&rays[i as usize])));
+    }
+
+    /// The closest hit, not counting `skip`, the primitive that the ray starts on. The few have their own way.
     #[inline]
     pub fn closest(&self, origin: Vec3, direction: Vec3, skip: u32) -> Hit {
         let ray = Ray::new(origin.into(), direction.into(), 0.0, f32::INFINITY);
         let mut found = RayHit::none();
         let (mut u, mut v) = (0.0, 0.0);
-        self.hierarchy.ray_traverse(ray, &mut found, |ray, index| {
+        let test = |ray: &Ray, index: usize| {
             let hit = self.shapes[index].intersect(ray.origin, ray.direction, skip);
             if hit.0 < ray.tmax {
                 (u, v) = (hit.1, hit.2);
             }
             hit.0
-        });
+        };
+        match &self.hierarchy {
+            Hierarchy::Wide(bvh) => bvh.ray_traverse(ray, &mut found, test),
+            Hierarchy::Binary(bvh) => bvh.ray_traverse(ray, &mut found, test),
+            Hierarchy::Few(_) => false,
+        };
         match self.shapes.get(found.primitive_id as usize) {
             Some(shape) => Hit { t: found.t, primitive: shape.id(), u, v },
             None => Hit { t: f32::INFINITY, primitive: NOTHING, u, v },
         }
     }
 
-    /// True when anything but `skip` and `target` is hit nearer than `distance`.
+    /// True when anything but where it starts and where it goes is in the way.
     #[inline]
-    pub fn occluded(&self, origin: Vec3, direction: Vec3, distance: f32, skip: u32, target: u32) -> bool {
-        let ray = Ray::new(origin.into(), direction.into(), 0.0, distance);
-        !self.hierarchy.ray_traverse_miss(ray, |ray, index| {
-            let shape = &self.shapes[index];
-            if shape.id() == target { f32::INFINITY } else { shape.intersect(ray.origin, ray.direction, skip).0 }
-        })
+    fn occluded(&self, shadow: &ShadowRay) -> bool {
+        let ray = Ray::new(shadow.origin.into(), shadow.direction.into(), 0.0, shadow.distance);
+        let test = |ray: &Ray, index: usize| match &self.shapes[index] {
+            shape if shape.id() == shadow.target => f32::INFINITY,
+            shape => shape.intersect(ray.origin, ray.direction, shadow.from).0,
+        };
+        match &self.hierarchy {
+            Hierarchy::Wide(bvh) => !bvh.ray_traverse_miss(ray, test),
+            Hierarchy::Binary(bvh) => !bvh.ray_traverse_miss(ray, test),
+            Hierarchy::Few(_) => false,
+        }
     }
 
     /// Where a ray toward `direction` starts that leaves `point` of `primitive`.

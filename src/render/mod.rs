@@ -11,6 +11,7 @@
 pub mod accel;
 mod bounce;
 mod camera;
+mod few;
 mod image;
 pub mod light;
 pub mod output;

@@ -37,7 +37,9 @@ pub struct ShadowRay {
 pub struct ShadowQueue {
     /// The rays.
     pub rays: Vec<ShadowRay>,
-    /// Of those, the ones that got through and whose light must be shaded, with the light's material.
+    /// Those that got through.
+    clear: Vec<u32>,
+    /// Of those, the ones whose light must be shaded, with the light's material.
     reached: Vec<(u32, u32)>,
 }
 
@@ -56,10 +58,9 @@ impl Wave {
     fn trace_queue(&mut self, world: &World, queue: &mut ShadowQueue) {
         queue.reached.clear();
         self.rays += queue.rays.len() as u64;
-        for (i, ray) in queue.rays.iter().enumerate() {
-            if world.accel.occluded(ray.origin, ray.direction, ray.distance, ray.from, ray.target) {
-                continue;
-            }
+        world.accel.unoccluded(&queue.rays, &mut queue.clear);
+        for &i in &queue.clear {
+            let ray = &queue.rays[i as usize];
             let material = match (&world.sky, ray.target) {
                 (Sky::Shader { material, .. }, NOTHING) => *material,
                 (Sky::Constant(_), NOTHING) => continue,
@@ -68,7 +69,7 @@ impl Wave {
             if ray.known {
                 gather(&mut self.paths[ray.path as usize], ray.contribution, material, &mut self.dropped);
             } else {
-                queue.reached.push((material as u32, i as u32));
+                queue.reached.push((material as u32, i));
             }
         }
     }

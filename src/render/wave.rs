@@ -180,11 +180,9 @@ impl Wave {
     fn intersect(&mut self, world: &World) {
         self.missed.clear();
         self.rays += self.active.len() as u64;
+        world.accel.intersect(&mut self.paths, &self.active);
         for &i in &self.active {
-            let path = &mut self.paths[i as usize];
-            let hit = world.accel.closest(path.hit.origin, path.hit.direction, path.from);
-            (path.hit.t, path.hit.primitive, path.hit.u, path.hit.v) = (hit.t, hit.primitive, hit.u, hit.v);
-            if hit.primitive == NOTHING {
+            if self.paths[i as usize].hit.primitive == NOTHING {
                 self.missed.push(i);
             }
         }
