@@ -158,13 +158,13 @@ pub struct Hit {
     pub v: f32,
 }
 
-/// Up to this many blocks of eight, testing all primitives is faster than a hierarchy.
-const MOST_BLOCKS: usize = 3;
+/// Up to this many primitives, testing all of them is faster than a hierarchy.
+const MOST: usize = 24;
 
 /// How rays find what they hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Eight primitives at a time, no hierarchy; only for a few spheres and quads.
+    /// Every primitive against sixteen rays at a time, no hierarchy; only for a few spheres and quads.
     Few,
     /// A hierarchy of eight compressed children a node.
     Wide,
@@ -188,7 +188,7 @@ pub struct Accel {
 impl Accel {
     /// Prepares `geometry` by the method that measured best for its size.
     pub fn new(geometry: &Geometry) -> Self {
-        match Few::new(geometry, MOST_BLOCKS) {
+        match Few::new(geometry, MOST) {
             Some(_) => Self::with(geometry, Method::Few),
             None => Self::with(geometry, Method::Wide),
         }

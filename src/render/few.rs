@@ -1,153 +1,161 @@
-//! Scenes of a few spheres and quads: no hierarchy, every ray against blocks of eight primitives at once.
+//! Scenes of a few spheres and quads: no hierarchy, every primitive against blocks of sixteen rays at once.
 //!
 //! On the scene of figure 1 (seven primitives) a hierarchy is one node and costs more to walk than the primitives cost
-//! to test; see `accel::Method` for the figures.
+//! to test; see `accel::Method` for the figures. Rays are the lanes, so that the nearest hit is a select, not a search.
 
-use super::accel::{Hit, NOTHING};
+use super::accel::NOTHING;
 use super::shadow::ShadowRay;
 use super::wave::Path;
 use crate::scene::{Geometry, Shape};
 use glam::Vec3;
 use multiversion::multiversion;
 
-const WIDTH: usize = 8;
+const WIDTH: usize = 16;
 type Lanes = [f32; WIDTH];
-
-/// Eight primitives of one kind, one array a component; empty places hold numbers that no ray meets.
-#[derive(Clone, Debug)]
-struct Block {
-    a: [Lanes; 3],
-    b: [Lanes; 3],
-    c: [Lanes; 3],
-    id: [u32; WIDTH],
-}
 
 /// All primitives of a small scene.
 #[derive(Clone, Debug)]
 pub struct Few {
-    spheres: Vec<Block>,
-    quads: Vec<Block>,
+    shapes: Vec<Shape>,
 }
 
 impl Few {
-    /// The blocks of `geometry`, unless it has triangles or needs more than `most` blocks.
+    /// The shapes of `geometry`, unless it has triangles or more than `most` primitives.
     pub fn new(geometry: &Geometry, most: usize) -> Option<Few> {
-        let (mut spheres, mut quads) = (Vec::new(), Vec::new());
-        for (id, primitive) in geometry.primitives.iter().enumerate() {
-            match primitive.shape {
-                Shape::Sphere { center, radius } => spheres.push((id as u32, center, Vec3::splat(radius), Vec3::ZERO)),
-                Shape::Quad { corner, edge_x, edge_y } => quads.push((id as u32, corner, edge_x, edge_y)),
-                Shape::Triangle { .. } => return None,
-            }
-            if spheres.len().div_ceil(WIDTH) + quads.len().div_ceil(WIDTH) > most {
-                return None;
+        let shapes: Vec<Shape> = geometry.primitives.iter().take(most.saturating_add(1)).map(|p| p.shape).collect();
+        let flat = shapes.iter().all(|s| !matches!(s, Shape::Triangle { .. }));
+        (flat && shapes.len() <= most).then_some(Few { shapes })
+    }
+}
+
+/// Sixteen rays, and the nearest hit of each so far.
+#[derive(Clone, Copy)]
+struct Block {
+    ox: Lanes,
+    oy: Lanes,
+    oz: Lanes,
+    dx: Lanes,
+    dy: Lanes,
+    dz: Lanes,
+    t: Lanes,
+    u: Lanes,
+    v: Lanes,
+    skip: [u32; WIDTH],
+    target: [u32; WIDTH],
+    id: [u32; WIDTH],
+}
+
+impl Block {
+    #[inline(always)]
+    fn empty() -> Self {
+        let zero = [0.0; WIDTH];
+        let none = [NOTHING; WIDTH];
+        Block {
+            ox: zero,
+            oy: zero,
+            oz: zero,
+            dx: zero,
+            dy: zero,
+            dz: zero,
+            t: zero,
+            u: zero,
+            v: zero,
+            skip: none,
+            target: none,
+            id: none,
+        }
+    }
+
+    #[inline(always)]
+    fn load(&mut self, k: usize, origin: Vec3, direction: Vec3, reach: f32, skip: u32) {
+        (self.ox[k], self.oy[k], self.oz[k]) = (origin.x, origin.y, origin.z);
+        (self.dx[k], self.dy[k], self.dz[k]) = (direction.x, direction.y, direction.z);
+        (self.t[k], self.skip[k], self.id[k]) = (reach, skip, NOTHING);
+    }
+
+    #[inline(always)]
+    fn meet_all(&mut self, few: &Few) {
+        for (id, shape) in few.shapes.iter().enumerate() {
+            match *shape {
+                Shape::Sphere { center, radius } => self.sphere(center, radius, id as u32),
+                Shape::Quad { corner, edge_x, edge_y } => self.quad(corner, edge_x, edge_y, id as u32),
+                // There are none: `Few::new` refuses them.
+                Shape::Triangle { .. } => {}
             }
         }
-        Some(Few { spheres: blocks(&spheres), quads: blocks(&quads) })
     }
-}
 
-fn blocks(list: &[(u32, Vec3, Vec3, Vec3)]) -> Vec<Block> {
-    let block = |part: &[(u32, Vec3, Vec3, Vec3)]| {
-        // NaN fails every comparison that a hit must pass.
-        let mut block = Block { a: [[0.0; 8]; 3], b: [[f32::NAN; 8]; 3], c: [[0.0; 8]; 3], id: [NOTHING; WIDTH] };
-        for (k, (id, a, b, c)) in part.iter().enumerate() {
-            block.id[k] = *id;
-            for axis in 0..3 {
-                (block.a[axis][k], block.b[axis][k], block.c[axis][k]) = (a[axis], b[axis], c[axis]);
-            }
-        }
-        block
-    };
-    list.chunks(WIDTH).map(block).collect()
-}
-
-/// Distances to eight spheres; the formulas are those of `accel::sphere`.
-#[inline(always)]
-fn spheres(s: &Block, o: Vec3, d: Vec3, skip: u32) -> Lanes {
-    let mut out = [f32::INFINITY; WIDTH];
-    for k in 0..WIDTH {
-        let (x, y, z, r) = (o.x - s.a[0][k], o.y - s.a[1][k], o.z - s.a[2][k], s.b[0][k]);
-        let b = x * d.x + y * d.y + z * d.z;
-        let (fx, fy, fz) = (x - b * d.x, y - b * d.y, z - b * d.z);
-        let h = r * r - (fx * fx + fy * fy + fz * fz);
-        let root = h.max(0.0).sqrt();
-        let (near, far) = (-b - root, root - b);
-        let t = if near > 0.0 { near } else { far };
-        let apart = if (h >= 0.0) & (t > 0.0) { t } else { f32::INFINITY };
-        let leaving = if -2.0 * b > 1e-6 * r { -2.0 * b } else { f32::INFINITY };
-        out[k] = if s.id[k] == skip { leaving } else { apart };
-    }
-    out
-}
-
-/// Distances to eight quads and where on them; the formulas are those of `accel::quad`.
-#[inline(always)]
-fn quads(q: &Block, o: Vec3, d: Vec3, skip: u32) -> (Lanes, Lanes, Lanes) {
-    let (mut ts, mut us, mut vs) = ([f32::INFINITY; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-    for k in 0..WIDTH {
-        let (x, y, z) = (o.x - q.a[0][k], o.y - q.a[1][k], o.z - q.a[2][k]);
-        let (ax, ay, az) = (q.b[0][k], q.b[1][k], q.b[2][k]);
-        let (bx, by, bz) = (q.c[0][k], q.c[1][k], q.c[2][k]);
-        let (px, py, pz) = (d.y * bz - d.z * by, d.z * bx - d.x * bz, d.x * by - d.y * bx);
-        let inverse = 1.0 / (ax * px + ay * py + az * pz);
-        let u = (x * px + y * py + z * pz) * inverse;
-        let (wx, wy, wz) = (y * az - z * ay, z * ax - x * az, x * ay - y * ax);
-        let v = (d.x * wx + d.y * wy + d.z * wz) * inverse;
-        let t = (bx * wx + by * wy + bz * wz) * inverse;
-        let inside = (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0) & (t > 0.0) & (q.id[k] != skip);
-        (ts[k], us[k], vs[k]) = (if inside { t } else { f32::INFINITY }, u, v);
-    }
-    (ts, us, vs)
-}
-
-#[inline(always)]
-fn closest(few: &Few, o: Vec3, d: Vec3, skip: u32) -> Hit {
-    let mut hit = Hit { t: f32::INFINITY, primitive: NOTHING, u: 0.0, v: 0.0 };
-    for block in &few.spheres {
-        let ts = spheres(block, o, d, skip);
+    /// The formulas are those of `accel::sphere`.
+    #[inline(always)]
+    fn sphere(&mut self, center: Vec3, r: f32, id: u32) {
         for k in 0..WIDTH {
-            if ts[k] < hit.t {
-                (hit.t, hit.primitive) = (ts[k], block.id[k]);
-            }
+            let (x, y, z) = (self.ox[k] - center.x, self.oy[k] - center.y, self.oz[k] - center.z);
+            let (dx, dy, dz) = (self.dx[k], self.dy[k], self.dz[k]);
+            let b = x * dx + y * dy + z * dz;
+            let (fx, fy, fz) = (x - b * dx, y - b * dy, z - b * dz);
+            let h = r * r - (fx * fx + fy * fy + fz * fz);
+            let root = h.max(0.0).sqrt();
+            let (near, far) = (-b - root, root - b);
+            let apart = if near > 0.0 { near } else { far };
+            let on = self.skip[k] == id;
+            let t = if on { -2.0 * b } else { apart };
+            let least = if on { 1e-6 * r } else { 0.0 };
+            let hit = (t > least) & (on | (h >= 0.0)) & (t < self.t[k]) & (self.target[k] != id);
+            self.t[k] = if hit { t } else { self.t[k] };
+            self.id[k] = if hit { id } else { self.id[k] };
         }
     }
-    for block in &few.quads {
-        let (ts, us, vs) = quads(block, o, d, skip);
+
+    /// The formulas are those of `accel::quad`.
+    #[inline(always)]
+    fn quad(&mut self, corner: Vec3, ex: Vec3, ey: Vec3, id: u32) {
         for k in 0..WIDTH {
-            if ts[k] < hit.t {
-                hit = Hit { t: ts[k], primitive: block.id[k], u: us[k], v: vs[k] };
-            }
+            let (x, y, z) = (self.ox[k] - corner.x, self.oy[k] - corner.y, self.oz[k] - corner.z);
+            let (dx, dy, dz) = (self.dx[k], self.dy[k], self.dz[k]);
+            let (px, py, pz) = (dy * ey.z - dz * ey.y, dz * ey.x - dx * ey.z, dx * ey.y - dy * ey.x);
+            let inverse = 1.0 / (ex.x * px + ex.y * py + ex.z * pz);
+            let u = (x * px + y * py + z * pz) * inverse;
+            let (qx, qy, qz) = (y * ex.z - z * ex.y, z * ex.x - x * ex.z, x * ex.y - y * ex.x);
+            let v = (dx * qx + dy * qy + dz * qz) * inverse;
+            let t = (ey.x * qx + ey.y * qy + ey.z * qz) * inverse;
+            let inside = (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0);
+            let hit = inside & (t > 0.0) & (t < self.t[k]) & (self.skip[k] != id) & (self.target[k] != id);
+            self.t[k] = if hit { t } else { self.t[k] };
+            self.u[k] = if hit { u } else { self.u[k] };
+            self.v[k] = if hit { v } else { self.v[k] };
+            self.id[k] = if hit { id } else { self.id[k] };
         }
     }
-    hit
 }
 
 /// Stores the closest hit of each active path.
 #[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
 pub fn intersect(few: &Few, paths: &mut [Path], active: &[u32]) {
-    for &i in active {
-        let path = &mut paths[i as usize];
-        let hit = closest(few, path.hit.origin, path.hit.direction, path.from);
-        (path.hit.t, path.hit.primitive, path.hit.u, path.hit.v) = (hit.t, hit.primitive, hit.u, hit.v);
+    let mut block = Block::empty();
+    for part in active.chunks(WIDTH) {
+        for (k, &i) in part.iter().enumerate() {
+            let path = &paths[i as usize];
+            block.load(k, path.hit.origin, path.hit.direction, f32::INFINITY, path.from);
+        }
+        block.meet_all(few);
+        for (k, &i) in part.iter().enumerate() {
+            let hit = &mut paths[i as usize].hit;
+            (hit.t, hit.primitive, hit.u, hit.v) = (block.t[k], block.id[k], block.u[k], block.v[k]);
+        }
     }
 }
 
 /// Keeps in `clear` the numbers of the rays that nothing stops.
 #[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
 pub fn unoccluded(few: &Few, rays: &[ShadowRay], clear: &mut Vec<u32>) {
-    for (i, ray) in rays.iter().enumerate() {
-        let mut nearest = f32::INFINITY;
-        let mut meet = |ts: Lanes, ids: &[u32; WIDTH]| {
-            for k in 0..WIDTH {
-                nearest = nearest.min(if ids[k] == ray.target { f32::INFINITY } else { ts[k] });
-            }
-        };
-        few.spheres.iter().for_each(|b| meet(spheres(b, ray.origin, ray.direction, ray.from), &b.id));
-        few.quads.iter().for_each(|b| meet(quads(b, ray.origin, ray.direction, ray.from).0, &b.id));
-        // An infinite distance must not stop a ray that nothing stands in the way of.
-        if nearest >= ray.distance {
-            clear.push(i as u32);
+    let mut block = Block::empty();
+    for (number, part) in rays.chunks(WIDTH).enumerate() {
+        for (k, ray) in part.iter().enumerate() {
+            block.load(k, ray.origin, ray.direction, ray.distance, ray.from);
+            block.target[k] = ray.target;
         }
+        block.meet_all(few);
+        let free = (0..part.len()).filter(|k| block.id[*k] == NOTHING);
+        clear.extend(free.map(|k| (number * WIDTH + k) as u32));
     }
 }
