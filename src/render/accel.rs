@@ -124,7 +124,8 @@ fn quad(from: Vec3A, direction: Vec3A, edge_x: Vec3A, edge_y: Vec3A) -> (f32, f3
     let v = direction.dot(q) * inverse;
     let t = edge_y.dot(q) * inverse;
     // A ray in the plane gives infinities or NaN, which fail every comparison.
-    if u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0 && t > 0.0 { (t, u, v) } else { MISS }
+    let unit = 0.0..=1.0;
+    if unit.contains(&u) && unit.contains(&v) && t > 0.0 { (t, u, v) } else { MISS }
 }
 
 /// Vertices seen from the ray's origin. Source: Plücker's test, in the symmetric form that Embree made known.
@@ -162,6 +163,11 @@ pub struct Hit {
 const MOST: usize = 24;
 
 /// How rays find what they hit.
+///
+/// Measured on one thread, baseline x86-64 build, million closest hits a second (all methods in one run):
+/// figure 1 (7 primitives) `Wide` 10.8, `Binary` 11.0; a bumpy ball of 204,480 triangles, rays from all around, `Wide`
+/// 0.55, `Binary` 0.47 (built in 0.21 s and 0.10 s). Hence `Wide` for meshes. `Few` on figure 1 takes about a third of
+/// the time of `Wide`; within a whole render, closest hits and shadows fell from 32 % to 17 % of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Every primitive against sixteen rays at a time, no hierarchy; only for a few spheres and quads.

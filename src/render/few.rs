@@ -108,6 +108,8 @@ impl Block {
 
     /// The formulas are those of `accel::quad`.
     #[inline(always)]
+    // `contains` asks one question after the other, which lanes cannot.
+    #[allow(clippy::manual_range_contains)]
     fn quad(&mut self, corner: Vec3, ex: Vec3, ey: Vec3, id: u32) {
         for k in 0..WIDTH {
             let (x, y, z) = (self.ox[k] - corner.x, self.oy[k] - corner.y, self.oz[k] - corner.z);

@@ -158,3 +158,35 @@ fn what_is_not_a_number_is_dropped_and_told_once() {
     let [report] = image.about.reports.as_slice() else { panic!("{:?}", image.about.reports) };
     assert!(report.starts_with("<scene text>:3:7: warning: shader group `bad`"), "{report}");
 }
+
+/// A closed mesh of triangles, each of them a light, seen from inside: nothing leaks between them.
+#[test]
+fn a_closed_mesh_sums_its_series() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("ball.obj"), super::speed::ball(16)).unwrap();
+    let path = folder.path().join("s.xml");
+    let text = r#"<World><Camera eye="0.3,0.2,0.1" fov="120"/>
+      <ShaderGroup>color c .5 .5 .5; color Cs .5 .5 .5; shader glow l1;</ShaderGroup>
+      <Model filename="ball.obj"/></World>"#;
+    std::fs::write(&path, text).unwrap();
+    for lights in [LightStrategy::Combined, LightStrategy::ScatteringOnly] {
+        let image = picture(path.to_str().unwrap(), |s| (s.samples, s.lights) = (64, lights));
+        assert!((image.mean()[0] - 1.0).abs() < 5e-3, "{lights:?}: {:?}", image.mean());
+        let darkest = image.pixels.iter().copied().fold(f32::INFINITY, f32::min);
+        assert!(darkest >= 0.5, "{lights:?}: {darkest}");
+    }
+}
+
+/// Two lights, one of them far brighter: the choice between them does not show in the mean.
+#[test]
+fn two_lights_add_up() {
+    let one = QUAD_LIGHT.replace("</World>", "");
+    let two = format!(
+        r#"{one}<ShaderGroup>color c 0.1 0.1 0.1; shader glow l1;</ShaderGroup>
+        <Quad corner="-1,-1,-1" edge_x="2,0,0" edge_y="0,0,2"/>
+        <Sphere center="0,2.1,0" radius="0.05"/><Sphere center="3,1,0" radius="0.5"/></World>"#
+    );
+    let mean = |lights| middle(&picture(&two, |s| (s.samples, s.lights, s.max_bounces) = (256, lights, 1)));
+    let (combined, scattering) = (mean(LightStrategy::Combined), mean(LightStrategy::ScatteringOnly));
+    assert!((combined / scattering - 1.0).abs() < 3e-3, "{combined} {scattering}");
+}

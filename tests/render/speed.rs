@@ -87,7 +87,7 @@ fn hierarchies() {
 }
 
 /// A bumpy ball of 2 n^2 triangles, as OBJ.
-fn ball(n: usize) -> String {
+pub fn ball(n: usize) -> String {
     use std::fmt::Write;
     let mut out = String::new();
     for i in 0..=n {
