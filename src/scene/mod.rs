@@ -1,1 +1,21 @@
-//! The scene room.
+//! Scenes: testrender's XML, shader groups as text, meshes, and the geometry that a renderer walks over.
+//!
+//! [`Scene::load`] takes a file name, or the XML text itself, and a [`GroupCompiler`] that turns each [`GroupSpec`]
+//! into something that can be run. Everything a user can get wrong ends here, as one [`SceneError`] with a place.
+
+mod build;
+mod error;
+mod geometry;
+mod group;
+mod load;
+mod mesh;
+mod nearest;
+mod spec;
+mod xml;
+
+pub use error::{Place, SceneError};
+pub use geometry::{Geometry, Object, Primitive, Shape};
+pub use group::{Connection, GroupCompiler, GroupSpec, Layer, ParamHints, ParamType, ParamValue, Usage, Values};
+pub use load::{Background, Camera, Material, Options, Scene, SceneSource};
+pub use nearest::nearest;
+pub use spec::parse_group;

@@ -1,0 +1,65 @@
+//! Camera rays: a pinhole, as testrender's, with the footprint of a pixel.
+
+use crate::scene::Camera;
+use glam::Vec3;
+
+/// A camera set up for an image size.
+#[derive(Clone, Copy, Debug)]
+pub struct RayCamera {
+    eye: Vec3,
+    direction: Vec3,
+    across: Vec3,
+    upward: Vec3,
+    inverse_width: f32,
+    inverse_height: f32,
+    pixel_solid_angle: f32,
+}
+
+impl RayCamera {
+    /// Sets `camera` up for an image of `width` x `height` pixels.
+    pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
+        let k = (camera.fov.to_radians() * 0.5).tan();
+        let across = camera.direction.cross(camera.up).normalize() * (k * width as f32 / height as f32);
+        // As in testrender, k is the whole height of the film at distance 1, so a picture spans tan(fov/2), not twice
+        // that. Scenes written for it are framed this way.
+        let upward = across.cross(camera.direction).normalize() * k;
+        let (inverse_width, inverse_height) = (1.0 / width as f32, 1.0 / height as f32);
+        let pixel_solid_angle = inverse_width * inverse_height * across.length() * upward.length();
+        RayCamera {
+            eye: camera.eye,
+            direction: camera.direction,
+            across,
+            upward,
+            inverse_width,
+            inverse_height,
+            pixel_solid_angle,
+        }
+    }
+
+    /// Where every ray begins.
+    pub fn eye(&self) -> Vec3 {
+        self.eye
+    }
+
+    /// The unit direction through a point of the image, in pixels from the upper left.
+    #[inline]
+    pub fn direction(&self, x: f32, y: f32) -> Vec3 {
+        let right = self.across * (x * self.inverse_width - 0.5);
+        let up = self.upward * (0.5 - y * self.inverse_height);
+        (right + up + self.direction).normalize()
+    }
+
+    /// How much the width of a pixel's cone grows with distance, for a ray of `direction`.
+    #[inline]
+    pub fn spread(&self, direction: Vec3) -> f32 {
+        let cos = self.direction.dot(direction);
+        (self.pixel_solid_angle * cos).max(0.0).sqrt() * cos
+    }
+}
+
+/// Turns a uniform number into an offset from the pixel's centre with the density of a tent of half-width 1.
+#[inline]
+pub fn tent(x: f32) -> f32 {
+    let x = 2.0 * x;
+    if x < 1.0 { x.sqrt() - 1.0 } else { 1.0 - (2.0 - x).sqrt() }
+}

@@ -1,0 +1,163 @@
+//! Scenes of a few spheres and quads: no hierarchy, every primitive against blocks of sixteen rays at once.
+//!
+//! On the scene of figure 1 (seven primitives) a hierarchy is one node and costs more to walk than the primitives cost
+//! to test; see `accel::Method` for the figures. Rays are the lanes, so that the nearest hit is a select, not a search.
+
+use super::accel::NOTHING;
+use super::shadow::ShadowRay;
+use super::wave::Path;
+use crate::scene::{Geometry, Shape};
+use glam::Vec3;
+use multiversion::multiversion;
+
+const WIDTH: usize = 16;
+type Lanes = [f32; WIDTH];
+
+/// All primitives of a small scene.
+#[derive(Clone, Debug)]
+pub struct Few {
+    shapes: Vec<Shape>,
+}
+
+impl Few {
+    /// The shapes of `geometry`, unless it has triangles or more than `most` primitives.
+    pub fn new(geometry: &Geometry, most: usize) -> Option<Few> {
+        let shapes: Vec<Shape> = geometry.primitives.iter().take(most.saturating_add(1)).map(|p| p.shape).collect();
+        let flat = shapes.iter().all(|s| !matches!(s, Shape::Triangle { .. }));
+        (flat && shapes.len() <= most).then_some(Few { shapes })
+    }
+}
+
+/// Sixteen rays, and the nearest hit of each so far.
+#[derive(Clone, Copy)]
+struct Block {
+    ox: Lanes,
+    oy: Lanes,
+    oz: Lanes,
+    dx: Lanes,
+    dy: Lanes,
+    dz: Lanes,
+    t: Lanes,
+    u: Lanes,
+    v: Lanes,
+    skip: [u32; WIDTH],
+    target: [u32; WIDTH],
+    id: [u32; WIDTH],
+}
+
+impl Block {
+    #[inline(always)]
+    fn empty() -> Self {
+        let zero = [0.0; WIDTH];
+        let none = [NOTHING; WIDTH];
+        Block {
+            ox: zero,
+            oy: zero,
+            oz: zero,
+            dx: zero,
+            dy: zero,
+            dz: zero,
+            t: zero,
+            u: zero,
+            v: zero,
+            skip: none,
+            target: none,
+            id: none,
+        }
+    }
+
+    #[inline(always)]
+    fn load(&mut self, k: usize, origin: Vec3, direction: Vec3, reach: f32, skip: u32) {
+        (self.ox[k], self.oy[k], self.oz[k]) = (origin.x, origin.y, origin.z);
+        (self.dx[k], self.dy[k], self.dz[k]) = (direction.x, direction.y, direction.z);
+        (self.t[k], self.skip[k], self.id[k]) = (reach, skip, NOTHING);
+    }
+
+    #[inline(always)]
+    fn meet_all(&mut self, few: &Few) {
+        for (id, shape) in few.shapes.iter().enumerate() {
+            match *shape {
+                Shape::Sphere { center, radius } => self.sphere(center, radius, id as u32),
+                Shape::Quad { corner, edge_x, edge_y } => self.quad(corner, edge_x, edge_y, id as u32),
+                // There are none: `Few::new` refuses them.
+                Shape::Triangle { .. } => {}
+            }
+        }
+    }
+
+    /// The formulas are those of `accel::sphere`.
+    #[inline(always)]
+    fn sphere(&mut self, center: Vec3, r: f32, id: u32) {
+        for k in 0..WIDTH {
+            let (x, y, z) = (self.ox[k] - center.x, self.oy[k] - center.y, self.oz[k] - center.z);
+            let (dx, dy, dz) = (self.dx[k], self.dy[k], self.dz[k]);
+            let b = x * dx + y * dy + z * dz;
+            let (fx, fy, fz) = (x - b * dx, y - b * dy, z - b * dz);
+            let h = r * r - (fx * fx + fy * fy + fz * fz);
+            let root = h.max(0.0).sqrt();
+            let (near, far) = (-b - root, root - b);
+            let apart = if near > 0.0 { near } else { far };
+            let on = self.skip[k] == id;
+            let t = if on { -2.0 * b } else { apart };
+            let least = if on { 1e-6 * r } else { 0.0 };
+            let hit = (t > least) & (on | (h >= 0.0)) & (t < self.t[k]) & (self.target[k] != id);
+            self.t[k] = if hit { t } else { self.t[k] };
+            self.id[k] = if hit { id } else { self.id[k] };
+        }
+    }
+
+    /// The formulas are those of `accel::quad`.
+    #[inline(always)]
+    // `contains` asks one question after the other, which lanes cannot.
+    #[allow(clippy::manual_range_contains)]
+    fn quad(&mut self, corner: Vec3, ex: Vec3, ey: Vec3, id: u32) {
+        for k in 0..WIDTH {
+            let (x, y, z) = (self.ox[k] - corner.x, self.oy[k] - corner.y, self.oz[k] - corner.z);
+            let (dx, dy, dz) = (self.dx[k], self.dy[k], self.dz[k]);
+            let (px, py, pz) = (dy * ey.z - dz * ey.y, dz * ey.x - dx * ey.z, dx * ey.y - dy * ey.x);
+            let inverse = 1.0 / (ex.x * px + ex.y * py + ex.z * pz);
+            let u = (x * px + y * py + z * pz) * inverse;
+            let (qx, qy, qz) = (y * ex.z - z * ex.y, z * ex.x - x * ex.z, x * ex.y - y * ex.x);
+            let v = (dx * qx + dy * qy + dz * qz) * inverse;
+            let t = (ey.x * qx + ey.y * qy + ey.z * qz) * inverse;
+            let inside = (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0);
+            let hit = inside & (t > 0.0) & (t < self.t[k]) & (self.skip[k] != id) & (self.target[k] != id);
+            self.t[k] = if hit { t } else { self.t[k] };
+            self.u[k] = if hit { u } else { self.u[k] };
+            self.v[k] = if hit { v } else { self.v[k] };
+            self.id[k] = if hit { id } else { self.id[k] };
+        }
+    }
+}
+
+/// Stores the closest hit of each active path.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+pub fn intersect(few: &Few, paths: &mut [Path], active: &[u32]) {
+    let mut block = Block::empty();
+    for part in active.chunks(WIDTH) {
+        for (k, &i) in part.iter().enumerate() {
+            let path = &paths[i as usize];
+            block.load(k, path.hit.origin, path.hit.direction, f32::INFINITY, path.from);
+        }
+        block.meet_all(few);
+        for (k, &i) in part.iter().enumerate() {
+            let hit = &mut paths[i as usize].hit;
+            (hit.t, hit.primitive, hit.u, hit.v) = (block.t[k], block.id[k], block.u[k], block.v[k]);
+        }
+    }
+}
+
+/// Keeps in `clear` the numbers of the rays that nothing stops.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+pub fn unoccluded(few: &Few, rays: &[ShadowRay], clear: &mut Vec<u32>) {
+    let mut block = Block::empty();
+    for (number, part) in rays.chunks(WIDTH).enumerate() {
+        for (k, ray) in part.iter().enumerate() {
+            block.load(k, ray.origin, ray.direction, ray.distance, ray.from);
+            block.target[k] = ray.target;
+        }
+        block.meet_all(few);
+        let free = (0..part.len()).filter(|k| block.id[*k] == NOTHING);
+        clear.extend(free.map(|k| (number * WIDTH + k) as u32));
+    }
+}

@@ -1,0 +1,151 @@
+//! What a scene needs: decided once, before rendering, so that nothing else is computed.
+
+use super::settings::{LightStrategy, Settings};
+use crate::exec::{Global, Group};
+use crate::scene::Scene;
+use std::fmt;
+
+/// Which columns of a shading point a material reads beside `I`, `N` and `Ng`, which lobes always need.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// P.
+    pub position: bool,
+    /// u and v.
+    pub uv: bool,
+    /// dPdu and dPdv.
+    pub tangents: bool,
+    /// The derivatives of P.
+    pub position_derivatives: bool,
+    /// The derivatives of u and v.
+    pub uv_derivatives: bool,
+    /// The derivatives of I.
+    pub direction_derivatives: bool,
+}
+
+impl Needs {
+    /// What `group` reads.
+    pub fn of(group: &Group) -> Self {
+        let reads = |globals: &[Global]| globals.iter().any(|g| group.reads(*g));
+        Needs {
+            position: reads(&[Global::P]),
+            uv: reads(&[Global::U, Global::V]),
+            tangents: reads(&[Global::DPdu, Global::DPdv]),
+            position_derivatives: reads(&[Global::PDerivatives]),
+            uv_derivatives: reads(&[Global::UvDerivatives]),
+            direction_derivatives: reads(&[Global::IDerivatives]),
+        }
+    }
+
+    /// True when the width of the ray's cone matters.
+    pub fn any_derivative(&self) -> bool {
+        self.position_derivatives || self.uv_derivatives || self.direction_derivatives
+    }
+}
+
+/// True when nothing that changes from point to point of one object reaches the group's result.
+pub fn same_all_over(group: &Group) -> bool {
+    use Global::*;
+    let varying = [P, I, N, Ng, U, V, DPdu, DPdv, PDerivatives, UvDerivatives, IDerivatives, Time, RayType, Backfacing];
+    !varying.iter().any(|g| group.reads(*g))
+}
+
+/// What one material takes part in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MaterialPlan {
+    /// It may emit.
+    pub emits: bool,
+    /// It may scatter.
+    pub scatters: bool,
+    /// What it reads.
+    pub needs: Needs,
+}
+
+/// What a whole scene needs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// One entry a material.
+    pub materials: Vec<MaterialPlan>,
+    /// Any material reads derivatives, so paths carry the width of their cone.
+    pub cones: bool,
+    /// Primitives that are sampled as lights.
+    pub lights: usize,
+    /// The background's radiance is one constant.
+    pub constant_background: bool,
+    /// Side of the background's importance table; 0 when none is needed.
+    pub background_table: u32,
+}
+
+impl Plan {
+    /// Makes the plan of `scene`.
+    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        let materials: Vec<MaterialPlan> = scene
+            .materials
+            .iter()
+            .map(|m| MaterialPlan {
+                emits: m.surface.can_emit(),
+                scatters: m.surface.can_scatter(),
+                needs: Needs::of(&m.surface),
+            })
+            .collect();
+        let is_light = |material: u32| {
+            let (plan, material) = (materials[material as usize], &scene.materials[material as usize]);
+            plan.emits || material.is_light
+        };
+        let sampling = settings.lights != LightStrategy::ScatteringOnly;
+        let objects = &scene.geometry.objects;
+        let lit = |p: &&crate::scene::Primitive| is_light(objects[p.object as usize].material);
+        let lights = if sampling { scene.geometry.primitives.iter().filter(lit).count() } else { 0 };
+        let background = scene.background.map(|b| (b, &scene.materials[b.material as usize].surface));
+        let constant =
+            background.is_none_or(|(_, g)| g.emission_is_uniform().is_some() || same_all_over(g) || !g.can_emit());
+        let background_table = match background {
+            // A constant sky is what scattering samples already reach best; sampling it as well only adds noise.
+            Some((b, _)) if sampling && !constant && b.resolution > 0 => b.resolution.max(32),
+            _ => 0,
+        };
+        let cones = materials.iter().any(|m| m.needs.any_derivative());
+        Plan { cones, materials, lights, constant_background: constant, background_table }
+    }
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let or = |yes: bool, a: &'static str, b: &'static str| if yes { a } else { b };
+        writeln!(
+            f,
+            "lights: {}",
+            match self.lights {
+                0 => "none, so no light sampling and no shadow rays to lights".to_owned(),
+                n => format!("{n} primitives are sampled, one a bounce"),
+            }
+        )?;
+        writeln!(
+            f,
+            "background: {}",
+            match self.background_table {
+                0 => or(
+                    self.constant_background,
+                    "constant or absent, known exactly, not sampled",
+                    "reached by scattering alone"
+                )
+                .to_owned(),
+                n => format!("varies, sampled by a table of {n} x {n}"),
+            }
+        )?;
+        writeln!(
+            f,
+            "ray cones: {}",
+            or(self.cones, "carried, derivatives are read", "not carried, no derivative is read")
+        )?;
+        for (i, m) in self.materials.iter().enumerate() {
+            let uv = or(m.needs.uv, "uv", "no uv");
+            writeln!(
+                f,
+                "material {i}: {}, {}, {uv}",
+                or(m.emits, "emits", "dark"),
+                or(m.scatters, "scatters", "ends paths")
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,19 @@
+//! How a render tells how far it is.
+
+/// Receives news of a running render; called from many threads.
+pub trait Progress: Sync {
+    /// `done` of `total` tiles are finished.
+    fn tiles(&self, done: usize, total: usize);
+
+    /// True asks the render to stop; the image then holds the tiles that were finished.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Tells nobody.
+pub struct Silent;
+
+impl Progress for Silent {
+    fn tiles(&self, _done: usize, _total: usize) {}
+}

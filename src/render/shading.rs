@@ -1,0 +1,120 @@
+//! The only door from the renderer to shaders and closures: a batch of points in, emission, light and directions out.
+
+use crate::closure::{Evaluation, Lobes, Samples, Settings};
+use crate::exec::{Group, Machine, Points};
+use crate::math::columns::Column3;
+
+/// Kinds of rays, as `raytype()` tests them.
+pub mod ray_type {
+    /// From the camera.
+    pub const CAMERA: i32 = 1;
+    /// Toward a light.
+    pub const SHADOW: i32 = 2;
+    /// After a diffuse bounce.
+    pub const DIFFUSE: i32 = 4;
+    /// After a glossy bounce.
+    pub const GLOSSY: i32 = 8;
+    /// After a mirror.
+    pub const REFLECTION: i32 = 16;
+    /// After a clear refraction.
+    pub const REFRACTION: i32 = 32;
+}
+
+/// What a sampled direction is, as `Samples::event` numbers it.
+pub mod event {
+    /// Absorbed.
+    pub const NONE: u8 = 0;
+    /// A diffuse bounce.
+    pub const DIFFUSE: u8 = 1;
+    /// A glossy bounce.
+    pub const GLOSSY: u8 = 2;
+    /// A mirror.
+    pub const REFLECT: u8 = 3;
+    /// A clear refraction.
+    pub const REFRACT: u8 = 4;
+    /// Straight through.
+    pub const THROUGH: u8 = 5;
+}
+
+/// One thread's shader, lobes and columns.
+pub struct Shading {
+    /// The batch to shade: fill it, then call `shade`.
+    pub points: Points,
+    /// Toward the lights, one direction a lane.
+    pub toward: Column3,
+    /// Random numbers, three a lane.
+    pub random: Column3,
+    /// What `evaluate` gave.
+    pub evaluation: Evaluation,
+    /// What `sample` gave.
+    pub samples: Samples,
+    machine: Machine,
+    lobes: Lobes,
+    viewer: Column3,
+}
+
+impl Shading {
+    /// Fresh scratch.
+    pub fn new(settings: Settings) -> Self {
+        Shading {
+            points: Points::default(),
+            toward: Column3::default(),
+            random: Column3::default(),
+            evaluation: Evaluation::default(),
+            samples: Samples::default(),
+            machine: Machine::new(),
+            lobes: Lobes::new(settings),
+            viewer: Column3::default(),
+        }
+    }
+
+    /// Makes room for a batch of `len` lanes.
+    pub fn resize(&mut self, len: usize) {
+        self.points.resize(len);
+        self.toward.resize(len);
+        self.random.resize(len);
+        self.viewer.resize(len);
+    }
+
+    /// Runs the group over the points and lays its closures out as lobes.
+    pub fn shade(&mut self, group: &Group) {
+        let i = &self.points.i;
+        for lane in 0..self.points.len {
+            self.viewer.x[lane] = -i.x[lane];
+            self.viewer.y[lane] = -i.y[lane];
+            self.viewer.z[lane] = -i.z[lane];
+        }
+        let tree = self.machine.shade(group, &self.points);
+        self.lobes.flatten(tree, &self.viewer, &self.points.ng);
+    }
+
+    /// Radiance emitted toward the viewer.
+    pub fn emission(&self) -> &Column3 {
+        self.lobes.emission()
+    }
+
+    /// Alpha that `holdout()` takes away.
+    pub fn holdout(&self) -> &[f32] {
+        self.lobes.holdout()
+    }
+
+    /// True when light samples can reach a lobe.
+    pub fn takes_light_samples(&self) -> bool {
+        self.lobes.has_non_delta()
+    }
+
+    /// Evaluates all lobes toward `toward`.
+    pub fn evaluate(&mut self) {
+        self.lobes.evaluate(&self.toward, &mut self.evaluation);
+    }
+
+    /// Samples a direction a lane by `random`.
+    pub fn sample(&mut self) {
+        self.lobes.sample(&self.random, &mut self.samples);
+    }
+
+    /// What shaders printed and complained of since the last call.
+    pub fn take_reports(&mut self) -> Vec<String> {
+        self.machine.take_reports()
+    }
+}

@@ -1,0 +1,354 @@
+//! Builds a scene, one XML element after another; what each tag and attribute means is written here and nowhere else.
+
+use super::error::{Place, SceneError};
+use super::geometry::{Geometry, Shape};
+use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamHints, ParamType, ParamValue, Usage, Values};
+use super::load::{Background, Camera, Material, Options, Scene};
+use super::mesh::{MaterialNames, add_mesh};
+use super::nearest::nearest;
+use super::spec::{Statements, parse_group};
+use super::xml::Element;
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+const TAGS: [&str; 7] = ["Option", "Camera", "Sphere", "Quad", "Model", "Background", "ShaderGroup"];
+const OPTIONS: [&str; 5] = ["max_bounces", "rr_depth", "aa", "no_jitter", "show_globals"];
+const GROUP_TAGS: [&str; 3] = ["Parameter", "Shader", "ConnectShaders"];
+
+/// The side of the background's importance table when the scene does not say.
+const DEFAULT_BACKGROUND_RESOLUTION: u32 = 1024;
+
+/// A scene in the making.
+pub struct Builder<'c> {
+    scene: Scene,
+    folders: Vec<PathBuf>,
+    compiler: &'c dyn GroupCompiler,
+    by_name: HashMap<String, u32>,
+}
+
+impl<'c> Builder<'c> {
+    /// An empty scene.
+    pub fn new(name: String, folders: Vec<PathBuf>, compiler: &'c dyn GroupCompiler) -> Self {
+        let scene = Scene {
+            name,
+            camera: Camera::default(),
+            options: Options::default(),
+            materials: Vec::new(),
+            geometry: Geometry::default(),
+            background: None,
+            warnings: Vec::new(),
+        };
+        Builder { scene, folders, compiler, by_name: HashMap::new() }
+    }
+
+    /// Takes one child of `<World>`.
+    pub fn element(&mut self, e: &Element) -> Result<(), SceneError> {
+        match e.tag() {
+            "Option" => self.option(e),
+            "Camera" => self.camera(e),
+            "Sphere" => self.sphere(e),
+            "Quad" => self.quad(e),
+            "Model" => self.model(e),
+            "Background" => self.background(e),
+            "ShaderGroup" => self.shader_group(e),
+            _ => Err(e.unknown_tag(&TAGS)),
+        }
+    }
+
+    /// The finished scene; `root` is the place to blame for what is missing.
+    pub fn finish(self, root: Place) -> Result<Scene, SceneError> {
+        if self.scene.geometry.primitives.is_empty() && self.scene.background.is_none() {
+            return Err(SceneError::at(root, "the scene has nothing to see")
+                .with_help("add a <Sphere>, <Quad>, <Model> or <Background>"));
+        }
+        Ok(self.scene)
+    }
+
+    fn option(&mut self, e: &Element) -> Result<(), SceneError> {
+        for attribute in e.attributes() {
+            let name = attribute.name();
+            if !OPTIONS.contains(&name) {
+                let hint = nearest(name, &OPTIONS).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
+                let place = e.place_at(attribute.range().start);
+                self.scene.warnings.push(format!("{place}: warning: unknown option `{name}` is ignored{hint}"));
+                continue;
+            }
+            let value: Option<u32> = attribute.value().strip_prefix("int ").and_then(|v| v.trim().parse().ok());
+            let Some(value) = value else {
+                return Err(e.bad_value(name, "`int N` with N of at least 0"));
+            };
+            let options = &mut self.scene.options;
+            match name {
+                "max_bounces" => options.max_bounces = Some(value),
+                "rr_depth" => options.rr_depth = Some(value),
+                "aa" => options.aa = Some(value.clamp(1, 4096)),
+                "no_jitter" => options.no_jitter = Some(value != 0),
+                _ => options.show_globals = Some(value),
+            }
+        }
+        Ok(())
+    }
+
+    fn camera(&mut self, e: &Element) -> Result<(), SceneError> {
+        e.check_attributes(&["eye", "dir", "look_at", "up", "fov"])?;
+        let base = Camera::default();
+        let eye = e.vector("eye")?.unwrap_or(base.eye);
+        let look_at = e.vector("look_at")?;
+        let dir = e.vector("dir")?.or(look_at.map(|at| at - eye)).unwrap_or(base.direction);
+        let up = e.vector("up")?.unwrap_or(base.up);
+        let fov = e.number::<f32>("fov", "an angle in degrees")?.unwrap_or(base.fov);
+        let Some(direction) = dir.try_normalize() else {
+            return Err(SceneError::at(e.place(), "the camera looks nowhere")
+                .with_help("`dir`, or `look_at` minus `eye`, must have a length"));
+        };
+        if direction.cross(up).length() <= 1e-6 * up.length() {
+            return Err(SceneError::at(e.place(), "the camera's `up` is parallel to where it looks")
+                .with_help("turn `up` aside, for example to 0,0,1"));
+        }
+        if !(fov > 0.0 && fov < 180.0) {
+            return Err(e.bad_value("fov", "an angle between 0 and 180 degrees"));
+        }
+        self.scene.camera = Camera { eye, direction, up, fov };
+        Ok(())
+    }
+
+    /// The group that geometry takes: the last one before it.
+    fn last_material(&self, e: &Element) -> Result<u32, SceneError> {
+        match self.scene.materials.len() {
+            0 => Err(SceneError::at(e.place(), format!("<{}> comes before any <ShaderGroup>", e.tag()))
+                .with_help("geometry and background take the last <ShaderGroup> above them")),
+            n => Ok(n as u32 - 1),
+        }
+    }
+
+    fn sphere(&mut self, e: &Element) -> Result<(), SceneError> {
+        e.check_attributes(&["center", "radius", "resolution"])?;
+        let material = self.last_material(e)?;
+        let center = e.required_vector("center")?;
+        e.required("radius")?;
+        let radius = e.number::<f32>("radius", "a number above 0")?.unwrap_or(0.0);
+        e.number::<u32>("resolution", "a whole number")?;
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(e.bad_value("radius", "a number above 0"));
+        }
+        self.scene.geometry.add_single(Shape::Sphere { center, radius }, material, e.place());
+        Ok(())
+    }
+
+    fn quad(&mut self, e: &Element) -> Result<(), SceneError> {
+        e.check_attributes(&["corner", "edge_x", "edge_y", "resolution"])?;
+        let material = self.last_material(e)?;
+        let corner = e.required_vector("corner")?;
+        let edge_x = e.required_vector("edge_x")?;
+        let edge_y = e.required_vector("edge_y")?;
+        e.number::<u32>("resolution", "a whole number")?;
+        let shape = Shape::Quad { corner, edge_x, edge_y };
+        // Edges parallel up to rounding have no normal either.
+        if shape.area() <= 1e-6 * edge_x.length() * edge_y.length() {
+            return Err(SceneError::at(e.place(), "this <Quad> has no area")
+                .with_help("`edge_x` and `edge_y` must both have a length and not be parallel"));
+        }
+        self.scene.geometry.add_single(shape, material, e.place());
+        Ok(())
+    }
+
+    fn model(&mut self, e: &Element) -> Result<(), SceneError> {
+        e.check_attributes(&["filename"])?;
+        let last = self.last_material(e)?;
+        let filename = e.required("filename")?;
+        let place = e.value_place("filename");
+        let Some(path) = self.folders.iter().map(|f| f.join(filename)).find(|p| p.is_file()) else {
+            let looked: Vec<String> = self.folders.iter().map(|f| f.display().to_string()).collect();
+            return Err(SceneError::at(place, format!("mesh `{filename}` is not found"))
+                .with_help(format!("looked in {}", looked.join(", "))));
+        };
+        let names = MaterialNames { by_name: &self.by_name, last };
+        let degenerate = add_mesh(&mut self.scene.geometry, &path, &names, &place)?;
+        if degenerate > 0 {
+            let warning =
+                format!("{place}: warning: {degenerate} triangles of `{filename}` have no area and are left out");
+            self.scene.warnings.push(warning);
+        }
+        Ok(())
+    }
+
+    fn background(&mut self, e: &Element) -> Result<(), SceneError> {
+        e.check_attributes(&["resolution"])?;
+        let material = self.last_material(e)?;
+        let resolution = e.number::<i32>("resolution", "a whole number")?;
+        let resolution = resolution.map_or(DEFAULT_BACKGROUND_RESOLUTION, |r| r.clamp(0, 8192) as u32);
+        self.scene.background = Some(Background { material, resolution });
+        Ok(())
+    }
+
+    fn shader_group(&mut self, e: &Element) -> Result<(), SceneError> {
+        e.check_attributes(&["name", "type", "commands", "is_light"])?;
+        let name = e.node.attribute("name");
+        let usage = usage_of(e)?;
+        let is_light = matches!(e.node.attribute("is_light"), Some("1" | "on" | "yes"));
+        let Statements { mut layers, mut connections, mut pending } = group_text(e)?;
+        for child in e.children() {
+            group_child(&child, &mut layers, &mut connections, &mut pending)?;
+        }
+        if layers.is_empty() {
+            return Err(SceneError::at(e.place(), "this <ShaderGroup> has no shader")
+                .with_help("write `shader NAME LAYER;` in it, or a <Shader name=\"\" layer=\"\"/>"));
+        }
+        if let Some(param) = pending.first() {
+            return Err(SceneError::at(
+                param.place.clone(),
+                format!("parameter `{}` has no shader after it", param.name),
+            )
+            .with_help("a parameter belongs to the next shader of the group"));
+        }
+        check_connections(&layers, &connections)?;
+        let search = self.folders.clone();
+        let spec = GroupSpec {
+            usage,
+            name: name.unwrap_or("group").into(),
+            is_light,
+            layers,
+            connections,
+            place: e.place(),
+            search,
+        };
+        let group = self.compiler.compile(&spec).map_err(|error| error.or_at(&spec.layers[0].place))?;
+        self.add_material(name, spec, group);
+        Ok(())
+    }
+
+    /// A second group of the same name replaces the surface or the displacement of the first.
+    fn add_material(&mut self, name: Option<&str>, spec: GroupSpec, group: crate::exec::Group) {
+        if usage_is_displacement(&spec) {
+            self.scene.warnings.push(format!("{}: warning: displacement is read but not applied", spec.place));
+        }
+        if let Some(&id) = name.and_then(|n| self.by_name.get(n)) {
+            let material = &mut self.scene.materials[id as usize];
+            match spec.usage {
+                Usage::Displacement => material.displacement = Some(group),
+                _ => material.surface = group,
+            }
+            return;
+        }
+        if let Some(name) = name {
+            self.by_name.insert(name.to_owned(), self.scene.materials.len() as u32);
+        }
+        let material = Material {
+            name: spec.name,
+            surface: group,
+            displacement: None,
+            is_light: spec.is_light,
+            place: spec.place,
+        };
+        self.scene.materials.push(material);
+    }
+}
+
+fn usage_is_displacement(spec: &GroupSpec) -> bool {
+    spec.usage == Usage::Displacement
+}
+
+fn usage_of(e: &Element) -> Result<Usage, SceneError> {
+    let name = e.node.attribute("type").unwrap_or("surface");
+    Usage::from_name(name).ok_or_else(|| {
+        let error = e.bad_value("type", "surface, displacement, volume or shader");
+        match nearest(name, &Usage::NAMES) {
+            Some(near) => error.with_help(format!("did you mean `{near}`?")),
+            None => error,
+        }
+    })
+}
+
+/// The statements of the `commands` attribute, or else of the element's own text.
+fn group_text(e: &Element) -> Result<Statements, SceneError> {
+    let (text, range) = match e.node.attribute_node("commands") {
+        Some(attribute) => (attribute.value(), attribute.range_value()),
+        None => match e.node.children().find(|n| n.is_text() && !n.text().unwrap_or("").trim().is_empty()) {
+            Some(node) => (node.text().unwrap_or(""), node.range()),
+            None => return Ok(Statements::default()),
+        },
+    };
+    // Entities make the text shorter than its source; then offsets do not map, and the start has to do.
+    let exact = range.len() == text.len();
+    parse_group(text, &|offset| e.place_at(range.start + if exact { offset } else { 0 }))
+}
+
+fn group_child(
+    e: &Element,
+    layers: &mut Vec<Layer>,
+    connections: &mut Vec<Connection>,
+    pending: &mut Vec<ParamValue>,
+) -> Result<(), SceneError> {
+    match e.tag() {
+        "Parameter" => {
+            pending.extend(e.attributes().map(|a| parameter_value(a.name(), a.value(), e.place_at(a.range().start))))
+        }
+        "Shader" => {
+            e.check_attributes(&["type", "name", "layer"])?;
+            let shader = e.required("name")?.to_owned();
+            let layer_name = e.required("layer")?.to_owned();
+            let params = std::mem::take(pending);
+            layers.push(Layer { shader, layer_name, params, place: e.value_place("name") });
+        }
+        "ConnectShaders" => {
+            e.check_attributes(&["srclayer", "srcparam", "dstlayer", "dstparam"])?;
+            connections.push(Connection {
+                source_layer: e.required("srclayer")?.to_owned(),
+                source_param: e.required("srcparam")?.to_owned(),
+                target_layer: e.required("dstlayer")?.to_owned(),
+                target_param: e.required("dstparam")?.to_owned(),
+                place: e.place(),
+            });
+        }
+        _ => return Err(e.unknown_tag(&GROUP_TAGS)),
+    }
+    Ok(())
+}
+
+/// `int 3`, `float .5`, `color 1 2 3` and so on; anything else is a string, as testrender reads it.
+fn parameter_value(name: &str, text: &str, place: Place) -> ParamValue {
+    let plain = |kind, values| ParamValue {
+        kind,
+        array: None,
+        name: name.to_owned(),
+        values,
+        hints: ParamHints::default(),
+        place: place.clone(),
+    };
+    let (word, rest) = text.split_once(' ').unwrap_or(("", text));
+    let number = rest.trim();
+    if word == "int"
+        && let Ok(value) = number.parse()
+    {
+        return plain(ParamType::Int, Values::Ints(vec![value]));
+    }
+    if let Some(kind) = ParamType::from_name(word).filter(|k| !matches!(k, ParamType::Int | ParamType::String)) {
+        let floats: Result<Vec<f32>, _> = number.split_whitespace().map(str::parse).collect();
+        if let Ok(floats) = floats
+            && floats.len() == kind.components()
+        {
+            return plain(kind, Values::Floats(floats));
+        }
+    }
+    plain(ParamType::String, Values::Strings(vec![text.to_owned()]))
+}
+
+/// A connection must join two layers of the group, the earlier to the later.
+fn check_connections(layers: &[Layer], connections: &[Connection]) -> Result<(), SceneError> {
+    let names: Vec<&str> = layers.iter().map(|l| l.layer_name.as_str()).collect();
+    for c in connections {
+        let find = |layer: &str| {
+            names.iter().position(|n| *n == layer).ok_or_else(|| {
+                let error = SceneError::at(c.place.clone(), format!("no layer is named `{layer}`"));
+                error.with_help(format!("the group's layers are: {}", names.join(", ")))
+            })
+        };
+        if find(&c.source_layer)? >= find(&c.target_layer)? {
+            let message = format!("layer `{}` does not come before layer `{}`", c.source_layer, c.target_layer);
+            return Err(
+                SceneError::at(c.place.clone(), message).with_help("values flow from earlier layers to later ones")
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,157 @@
+//! A shader group as written: layers, parameter values and connections, each with its place. Not yet compiled.
+
+use super::error::{Place, SceneError};
+use crate::exec;
+use std::path::PathBuf;
+
+/// What a group is used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Usage {
+    /// The usual one: colour and light of a surface.
+    Surface,
+    /// Moves points.
+    Displacement,
+    /// Accepted, as OSL does; nothing of it differs from `Surface` here.
+    Volume,
+    /// A generic shader.
+    Shader,
+}
+
+impl Usage {
+    /// The names a scene may write.
+    pub const NAMES: [&'static str; 4] = ["surface", "displacement", "volume", "shader"];
+
+    /// The usage of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Some(match name {
+            "surface" => Usage::Surface,
+            "displacement" => Usage::Displacement,
+            "volume" => Usage::Volume,
+            "shader" => Usage::Shader,
+            _ => return None,
+        })
+    }
+}
+
+/// The type that a parameter value was written with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum ParamType {
+    Int,
+    Float,
+    Color,
+    Point,
+    Vector,
+    Normal,
+    Matrix,
+    String,
+}
+
+impl ParamType {
+    /// The names a group's text may write.
+    pub const NAMES: [&'static str; 8] = ["int", "float", "color", "point", "vector", "normal", "matrix", "string"];
+
+    /// The type of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        use ParamType::*;
+        let all = [Int, Float, Color, Point, Vector, Normal, Matrix, String];
+        Self::NAMES.iter().position(|n| *n == name).map(|i| all[i])
+    }
+
+    /// How many numbers (or strings) one value of this type has.
+    pub fn components(self) -> usize {
+        match self {
+            ParamType::Int | ParamType::Float | ParamType::String => 1,
+            ParamType::Color | ParamType::Point | ParamType::Vector | ParamType::Normal => 3,
+            ParamType::Matrix => 16,
+        }
+    }
+}
+
+/// The numbers or strings of a parameter, padded with zeros or empty strings to the declared size.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum Values {
+    Floats(Vec<f32>),
+    Ints(Vec<i32>),
+    Strings(Vec<String>),
+}
+
+/// What the text says of a parameter beside its value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ParamHints {
+    /// The value comes from the geometry when that has one (`lockgeom = 0` says the same).
+    pub interpolated: bool,
+    /// The value may change between renders and must not be folded away.
+    pub interactive: bool,
+}
+
+/// One parameter value of a layer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParamValue {
+    /// The type as written.
+    pub kind: ParamType,
+    /// `None` for a plain value, else the array's length.
+    pub array: Option<usize>,
+    /// The parameter's name, `.field` included.
+    pub name: String,
+    /// The values.
+    pub values: Values,
+    /// The hints.
+    pub hints: ParamHints,
+    /// Where the name is written.
+    pub place: Place,
+}
+
+/// One shader of a group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// The shader's name, to be looked for as `NAME.osl`.
+    pub shader: String,
+    /// The name that connections use.
+    pub layer_name: String,
+    /// The values that precede the shader in the text.
+    pub params: Vec<ParamValue>,
+    /// Where the shader's name is written.
+    pub place: Place,
+}
+
+/// An output of one layer that feeds an input of a later one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Connection {
+    /// Name of the earlier layer.
+    pub source_layer: String,
+    /// Its output, `.field` or `[i]` included.
+    pub source_param: String,
+    /// Name of the later layer.
+    pub target_layer: String,
+    /// Its input, `.field` or `[i]` included.
+    pub target_param: String,
+    /// Where the connection is written.
+    pub place: Place,
+}
+
+/// A whole group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupSpec {
+    /// What it is for.
+    pub usage: Usage,
+    /// Its name; `group` when the scene gives none.
+    pub name: String,
+    /// True when the scene asks for its primitives to be sampled as lights.
+    pub is_light: bool,
+    /// The layers, first to last; the last one makes the closure.
+    pub layers: Vec<Layer>,
+    /// The connections.
+    pub connections: Vec<Connection>,
+    /// Where the group begins.
+    pub place: Place,
+    /// Folders to look for shaders in: that of the scene first.
+    pub search: Vec<PathBuf>,
+}
+
+/// Turns a group as written into one that runs. Outside the tests this is the compiler.
+pub trait GroupCompiler {
+    /// Compiles one group, or says what is wrong with it and where.
+    fn compile(&self, spec: &GroupSpec) -> Result<exec::Group, SceneError>;
+}

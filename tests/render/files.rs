@@ -1,0 +1,44 @@
+//! Image files: whole or not at all.
+
+use super::materials::picture;
+use velour::render::output::{check, write};
+
+const SCENE: &str = r#"<World><ShaderGroup>color c 0.25 0.5 1; shader sky l1;</ShaderGroup><Background/></World>"#;
+
+#[test]
+fn every_format_is_written_whole_and_nothing_is_left_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for alpha in [false, true] {
+        let image = picture(SCENE, |s| (s.width, s.height, s.alpha) = (5, 3, alpha));
+        for extension in ["exr", "png", "hdr"] {
+            let path = folder.path().join(format!("image.{extension}"));
+            write(&image, &path).unwrap();
+            let read = image::open(&path).unwrap().to_rgb32f();
+            assert_eq!((read.width(), read.height()), (5, 3));
+            if extension == "exr" {
+                assert_eq!(read.get_pixel(4, 2).0, [0.25, 0.5, 1.0]);
+            }
+        }
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+}
+
+#[test]
+fn the_exr_header_says_how_the_picture_was_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("image.exr");
+    write(&picture(SCENE, |s| (s.width, s.height, s.seed) = (4, 4, 7)), &path).unwrap();
+    let meta = exr::prelude::MetaData::read_from_file(&path, false).unwrap();
+    let own = &meta.headers[0].own_attributes;
+    assert!(own.software_name.as_ref().unwrap().to_string().starts_with("velour "));
+    let comments = own.comments.as_ref().unwrap().to_string();
+    assert!(comments.contains("scene=<scene text> samples=16 seed=7 velour="), "{comments}");
+}
+
+#[test]
+fn a_name_that_cannot_be_written_is_refused_before_rendering() {
+    let error = check("picture.jpeg".as_ref()).unwrap_err();
+    assert!(error.contains("known extensions: exr, png, hdr"), "{error}");
+    assert!(check("no-such-folder/picture.exr".as_ref()).unwrap_err().contains("no-such-folder"));
+    assert!(check("picture.EXR".as_ref()).is_ok());
+}

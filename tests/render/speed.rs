@@ -1,0 +1,109 @@
+//! How fast it is: run with `cargo test --release --test render -- --ignored --nocapture`.
+
+use super::materials::scene;
+use velour::render::accel::{Accel, Method};
+use velour::render::{Settings, Silent, render};
+
+/// The scene that peers were timed on.
+pub const FIGURE1: &str = r#"<World>
+  <Camera eye="0,1.2,11" look_at="0,0.9,0" fov="28" />
+  <Option max_bounces="int 4" />
+  <ShaderGroup>shader sky l1;</ShaderGroup>
+  <Background resolution="64" />
+  <ShaderGroup>color Cs 0.5 0.5 0.5; shader matte l1;</ShaderGroup>
+  <Quad corner="-20,0,-20" edge_x="0,0,40" edge_y="40,0,0" />
+  <ShaderGroup>float rough 0.15; shader cloth l1;</ShaderGroup><Sphere center="-4.4,1,0" radius="1" />
+  <ShaderGroup>float rough 0.25; shader cloth l1;</ShaderGroup><Sphere center="-2.2,1,0" radius="1" />
+  <ShaderGroup>float rough 0.40; shader cloth l1;</ShaderGroup><Sphere center="0,1,0" radius="1" />
+  <ShaderGroup>float rough 0.65; shader cloth l1;</ShaderGroup><Sphere center="2.2,1,0" radius="1" />
+  <ShaderGroup>float rough 1.0; shader cloth l1;</ShaderGroup><Sphere center="4.4,1,0" radius="1" />
+  <ShaderGroup is_light="yes">float power 400; shader emitter l1;</ShaderGroup>
+  <Quad corner="-3,6,2" edge_x="6,0,0" edge_y="0,0,3" />
+</World>"#;
+
+#[test]
+#[ignore = "a measurement"]
+fn figure_1() {
+    let scene = scene(FIGURE1);
+    for threads in [1, 2, 1, 2] {
+        let settings = Settings { width: 640, height: 256, samples: 64, threads, ..Settings::default() };
+        let image = render(&scene, &settings.with_options(&scene.options), &Silent).unwrap();
+        let about = &image.about;
+        println!(
+            "{threads} threads: {:.2} M samples/s, {:.2} M rays/s, prepared in {:.1} ms, mean {:.5}",
+            about.paths as f64 / about.seconds_tracing * 1e-6,
+            about.rays as f64 / about.seconds_tracing * 1e-6,
+            about.seconds_preparing * 1e3,
+            image.mean()[0],
+        );
+        velour::render::output::write(&image, &std::env::temp_dir().join("figure1.png")).unwrap();
+    }
+}
+
+/// Rays from all around toward points inside a ball, as scattered light makes them.
+fn rays(count: u32, reach: f32) -> Vec<(glam::Vec3, glam::Vec3)> {
+    let point = |i: u32, set: u32| {
+        let r = velour::render::random::sample(1, i, set);
+        let (s, c) = (r[0] * std::f32::consts::TAU).sin_cos();
+        let z = 1.0 - 2.0 * r[1];
+        glam::Vec3::new(c * (1.0 - z * z).sqrt(), z, s * (1.0 - z * z).sqrt()) * r[2].cbrt()
+    };
+    let ray = |i| {
+        let from = point(i, 0).normalize() * reach * 2.0;
+        (from, (point(i, 1) * reach - from).normalize())
+    };
+    (0..count).map(ray).collect()
+}
+
+#[test]
+#[ignore = "a measurement"]
+fn hierarchies() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = folder.path().join("ball.obj");
+    std::fs::write(&mesh, ball(320)).unwrap();
+    let xml = folder.path().join("s.xml");
+    let text = r#"<World><ShaderGroup>shader matte l1;</ShaderGroup><Model filename="ball.obj"/></World>"#;
+    std::fs::write(&xml, text).unwrap();
+    let ball = velour::scene::Scene::load(xml.to_str().unwrap(), &[], &super::materials::Materials).unwrap();
+    for (name, scene, reach) in [("figure 1", &scene(FIGURE1), 5.0), ("ball", &ball, 1.0)] {
+        let rays = rays(60_000, reach);
+        for method in [Method::Wide, Method::Binary, Method::Wide, Method::Binary] {
+            let start = std::time::Instant::now();
+            let accel = Accel::with(&scene.geometry, method);
+            let built = start.elapsed().as_secs_f64();
+            let start = std::time::Instant::now();
+            let mut hits = 0;
+            for _ in 0..10 {
+                hits += rays.iter().filter(|(o, d)| accel.closest(*o, *d, u32::MAX).t < 1e9).count();
+            }
+            let rate = 10.0 * rays.len() as f64 / start.elapsed().as_secs_f64() * 1e-6;
+            let triangles = scene.geometry.primitives.len();
+            println!(
+                "{name} ({triangles}): {method:?} {rate:.2} M rays/s, {hits} hits, built in {:.0} ms",
+                built * 1e3
+            );
+        }
+    }
+}
+
+/// A bumpy ball of 2 n^2 triangles, as OBJ.
+pub fn ball(n: usize) -> String {
+    use std::fmt::Write;
+    let mut out = String::new();
+    for i in 0..=n {
+        for j in 0..=n {
+            let (theta, phi) =
+                (std::f32::consts::PI * i as f32 / n as f32, std::f32::consts::TAU * j as f32 / n as f32);
+            let r = 0.9 + 0.1 * (20.0 * theta).sin() * (17.0 * phi).sin();
+            let (x, y, z) = (r * theta.sin() * phi.cos(), r * theta.cos(), r * theta.sin() * phi.sin());
+            writeln!(out, "v {x} {y} {z}").unwrap();
+        }
+    }
+    for i in 0..n {
+        for j in 1..=n {
+            let (a, b) = (i * (n + 1) + j, (i + 1) * (n + 1) + j);
+            writeln!(out, "f {a} {b} {}\nf {a} {} {}", b + 1, b + 1, a + 1).unwrap();
+        }
+    }
+    out
+}

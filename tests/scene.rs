@@ -1,0 +1,215 @@
+//! Scenes: what they may say, and one clear message with a place for each thing they may not.
+
+use std::path::PathBuf;
+use velour::exec::{Emission, Group};
+use velour::scene::{GroupCompiler, GroupSpec, ParamType, Place, Scene, SceneError, Shape, Usage, Values, parse_group};
+
+/// Knows every shader but `missing`, and keeps nothing.
+struct Anything;
+
+impl GroupCompiler for Anything {
+    fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
+        match spec.layers.iter().find(|l| l.shader == "missing") {
+            Some(layer) => Err(SceneError::at(layer.place.clone(), "shader `missing` is not found")),
+            None => Ok(Group { albedo: glam::Vec3::splat(0.5), through: 0.0, emission: Emission::None }),
+        }
+    }
+}
+
+fn load(argument: &str) -> Result<Scene, SceneError> {
+    Scene::load(argument, &[] as &[PathBuf], &Anything)
+}
+
+/// The message of a scene whose second line is `line`, in a file called `<scene text>`.
+fn message(line: &str) -> String {
+    let text = format!(
+        "<World><ShaderGroup>shader matte l1;</ShaderGroup><Sphere center=\"0,0,0\" radius=\"1\"/>\n{line}\n</World>"
+    );
+    match load(&text) {
+        Ok(_) => panic!("accepted: {line}"),
+        Err(error) => error.to_string().replace("<scene text>", "s"),
+    }
+}
+
+#[test]
+fn every_mistake_has_a_place_and_a_message() {
+    let cases = [
+        ("<Spere/>", "s:2:1: error: unknown tag <Spere>\n  help: did you mean <Sphere>?"),
+        ("<Teapot/>", "s:2:1: error: unknown tag <Teapot>\n  help: known tags here: Option, Camera"),
+        (
+            r#"<Sphere centre="0,0,0"/>"#,
+            "s:2:9: error: <Sphere> has no attribute `centre`\n  help: did you mean `center`?",
+        ),
+        (r#"<Sphere center="0,0,0"/>"#, "s:2:1: error: <Sphere> needs the attribute `radius`"),
+        (r#"<Sphere center="0,0" radius="1"/>"#, "s:2:17: error: `center` of <Sphere> is `0,0`: three numbers"),
+        (r#"<Sphere center="0,0,0" radius="0"/>"#, "s:2:32: error: `radius` of <Sphere> is `0`: a number above 0"),
+        (r#"<Sphere center="0,0,0" radius="nan"/>"#, "s:2:32: error: `radius`"),
+        (r#"<Sphere center="0,0,inf" radius="1"/>"#, "s:2:17: error: `center`"),
+        (r#"<Quad corner="0,0,0" edge_x="1,0,0" edge_y="0,0,0"/>"#, "s:2:1: error: this <Quad> has no area"),
+        (r#"<Quad corner="0,0,0" edge_x="1,2,3" edge_y="2,4,6"/>"#, "s:2:1: error: this <Quad> has no area"),
+        (r#"<Model filename="nowhere.obj"/>"#, "s:2:18: error: mesh `nowhere.obj` is not found\n  help: looked in ."),
+        (r#"<Camera dir="0,0,0"/>"#, "s:2:1: error: the camera looks nowhere"),
+        (r#"<Camera dir="0,1,0"/>"#, "s:2:1: error: the camera's `up` is parallel"),
+        (r#"<Camera fov="180"/>"#, "s:2:14: error: `fov` of <Camera> is `180`"),
+        (r#"<Option aa="4"/>"#, "s:2:13: error: `aa` of <Option> is `4`: `int N`"),
+        (r#"<Background resolution="many"/>"#, "s:2:25: error: `resolution`"),
+        ("<ShaderGroup/>", "s:2:1: error: this <ShaderGroup> has no shader"),
+        (
+            r#"<ShaderGroup type="surfac">shader a b;</ShaderGroup>"#,
+            "s:2:20: error: `type` of <ShaderGroup> is `surfac`",
+        ),
+        ("<ShaderGroup>shader missing l1;</ShaderGroup>", "s:2:21: error: shader `missing` is not found"),
+        ("<ShaderGroup>float a 1;</ShaderGroup>", "s:2:1: error: this <ShaderGroup> has no shader"),
+        ("<ShaderGroup>shader a b; float k 1;</ShaderGroup>", "s:2:32: error: parameter `k` has no shader after it"),
+        ("<ShaderGroup>shade a b;</ShaderGroup>", "s:2:14: error: unknown statement `shade`"),
+        ("<ShaderGroup>param flat k 1; shader a b;</ShaderGroup>", "s:2:20: error: unknown parameter type `flat`"),
+        ("<ShaderGroup>float k 1 2; shader a b;</ShaderGroup>", "s:2:24: error: `;` expected, found `2`"),
+        ("<ShaderGroup>float k x; shader a b;</ShaderGroup>", "s:2:22: error: `;` expected, found `x`"),
+        ("<ShaderGroup>string k \"x; shader a b;</ShaderGroup>", "s:2:23: error: this string has no closing quote"),
+        ("<ShaderGroup>float k 1 [[int lock=0]]; shader a b;</ShaderGroup>", "s:2:26: error: unknown hint `int lock`"),
+        ("<ShaderGroup>shader a b; connect b c;</ShaderGroup>", "s:2:36: error: `.` expected after layer `b`"),
+        ("<ShaderGroup>shader a b; connect b.x d.y;</ShaderGroup>", "s:2:34: error: no layer is named `d`"),
+        (
+            "<ShaderGroup>shader a b; shader a c; connect c.x b.y;</ShaderGroup>",
+            "s:2:46: error: layer `c` does not come before",
+        ),
+        ("<ShaderGroup><Shadr/></ShaderGroup>", "s:2:14: error: unknown tag <Shadr>\n  help: did you mean <Shader>?"),
+        (r#"<ShaderGroup><Shader name="a"/></ShaderGroup>"#, "s:2:14: error: <Shader> needs the attribute `layer`"),
+        ("<Sphere", "error: the scene is not well-formed XML"),
+    ];
+    let wrong: Vec<String> = cases
+        .iter()
+        .map(|(line, expected)| (line, message(line), expected))
+        .filter(|(_, found, expected)| !found.contains(*expected))
+        .map(|(line, found, expected)| format!("{line}\n  gives    {found}\n  expected {expected}"))
+        .collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn mistakes_of_the_whole_scene() {
+    let error = |text: &str| load(text).map(|_| ()).unwrap_err().to_string();
+    assert!(error("<World/>").contains(":1:1: error: the scene has nothing to see"));
+    assert!(error("<Scene/>").contains(":1:1: error: the scene's root is <Scene>"));
+    assert!(error("no-such-file.xml").contains("cannot read the scene `no-such-file.xml`"));
+    let early = error(r#"<World><Sphere center="0,0,0" radius="1"/></World>"#);
+    assert!(early.contains(":1:8: error: <Sphere> comes before any <ShaderGroup>"), "{early}");
+}
+
+#[test]
+fn an_unreadable_mesh_blames_the_scene_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("s.xml");
+    std::fs::write(&scene, "<World><ShaderGroup>shader a b;</ShaderGroup>\n<Model filename=\"m.obj\"/></World>")
+        .unwrap();
+    for (mesh, what) in [("v 1 2\n", "mesh"), ("v 0 0 0\nf 1 2 9\n", "mesh"), ("# empty\n", "it has no faces")] {
+        std::fs::write(folder.path().join("m.obj"), mesh).unwrap();
+        let error = load(scene.to_str().unwrap()).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains("s.xml:2:18: error: mesh") && error.contains(what), "{error}");
+    }
+}
+
+#[test]
+fn a_mesh_finds_its_materials_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 0\no thing\nusemtl red\nf 1 2 3\nusemtl other\nf 2 4 3\nf 1 5 1\n";
+    std::fs::write(folder.path().join("m.obj"), obj).unwrap();
+    std::fs::write(folder.path().join("m.mtl"), "newmtl red\nKd 1 0 0\nnewmtl other\nKd 0 0 1\n").unwrap();
+    let scene = folder.path().join("s.xml");
+    let text = r#"<World><ShaderGroup name="red">shader a b;</ShaderGroup><ShaderGroup name="last">shader a b;</ShaderGroup>
+      <Model filename="m.obj"/></World>"#;
+    std::fs::write(&scene, text).unwrap();
+    let scene = load(scene.to_str().unwrap()).unwrap();
+    let objects = &scene.geometry.objects;
+    let materials: Vec<u32> = scene.geometry.primitives.iter().map(|p| objects[p.object as usize].material).collect();
+    assert_eq!(materials, [0, 1]);
+    assert_eq!(objects[0].surface_area, 1.0, "two materials of one shape are one surface");
+    assert!(scene.warnings[0].contains("1 triangles of `m.obj` have no area"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn a_scene_says_what_it_says() {
+    let scene = load(
+        r#"<World>
+        <Camera eye="1,2,3" look_at="1,2,0" fov="30"/>
+        <Option max_bounces="int 4" aa="int 3" colour="int 1"/>
+        <ShaderGroup name="m" is_light="on">shader matte l1;</ShaderGroup>
+        <Quad corner="0,0,0" edge_x="1,0,0" edge_y="0,2,0" resolution="4"/>
+        <ShaderGroup name="m" type="displacement">shader bump l1;</ShaderGroup>
+        <Background/>
+    </World>"#,
+    )
+    .unwrap();
+    assert_eq!(scene.camera.direction, glam::Vec3::NEG_Z);
+    assert_eq!((scene.options.max_bounces, scene.options.aa, scene.options.rr_depth), (Some(4), Some(3), None));
+    assert!(scene.warnings[0].contains(":3:48: warning: unknown option `colour`"), "{:?}", scene.warnings);
+    assert_eq!(scene.materials.len(), 1);
+    assert!(scene.materials[0].is_light && scene.materials[0].displacement.is_some());
+    assert_eq!(scene.background.unwrap().resolution, 1024);
+    assert_eq!(scene.geometry.objects[0].surface_area, 2.0);
+    assert!(matches!(scene.geometry.primitives[0].shape, Shape::Quad { .. }));
+}
+
+fn at(offset: usize) -> Place {
+    Place { file: "g".into(), line: 1, column: offset as u32 + 1 }
+}
+
+#[test]
+fn group_text_is_read_as_osl_writes_it() {
+    let text = r#"param float k 0.5 [[int lockgeom=0, int interactive=1]]; color[2] c 1 2 3 4;
+        string s "a; \"b\""; string[] t x "y z" w; int n -3, matrix m 1; float[] e 1 2 3;
+        param float st.f 2; shader noise "n 1", shader "mat" l2
+        connect"#;
+    let error = parse_group(text, &at).unwrap_err();
+    assert!(error.message.contains("`;` expected, found `connect`"), "{error}");
+    let text =
+        text.replace("l2\n", "l2;\n").replace("connect", "connect \"n 1\".out l2.st.f; connect \"n 1\".c[1] l2.k");
+    let group = parse_group(&text, &at).unwrap();
+    let params = &group.layers[0].params;
+    let names: Vec<&str> = params.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["k", "c", "s", "t", "n", "m", "e", "st.f"]);
+    assert!(params[0].hints.interpolated && params[0].hints.interactive);
+    assert_eq!(params[1].values, Values::Floats(vec![1.0, 2.0, 3.0, 4.0, 0.0, 0.0]), "padded with zeros");
+    assert_eq!((params[1].kind, params[1].array), (ParamType::Color, Some(2)));
+    assert_eq!(params[2].values, Values::Strings(vec!["a; \"b\"".into()]));
+    assert_eq!(
+        (&params[3].values, params[3].array),
+        (&Values::Strings(vec!["x".into(), "y z".into(), "w".into()]), Some(3))
+    );
+    assert_eq!(params[4].values, Values::Ints(vec![-3]));
+    assert_eq!(params[5].values, Values::Floats([vec![1.0], vec![0.0; 15]].concat()));
+    assert_eq!(params[6].array, Some(3));
+    assert_eq!((group.layers[0].layer_name.as_str(), group.layers[1].shader.as_str()), ("n 1", "mat"));
+    assert_eq!(group.layers[1].params, []);
+    assert_eq!(group.connections[1].source_param, "c[1]");
+    assert_eq!(group.connections[0].target_param, "st.f");
+}
+
+#[test]
+fn child_elements_make_the_same_group_as_text() {
+    struct Keep(std::cell::RefCell<Vec<GroupSpec>>);
+    impl GroupCompiler for Keep {
+        fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
+            self.0.borrow_mut().push(spec.clone());
+            Anything.compile(spec)
+        }
+    }
+    let keep = Keep(Default::default());
+    let text = r#"<World>
+      <ShaderGroup><Parameter k="float 0.5" c="color 1 2 3" n="int 3" s="plain text"/>
+        <Shader type="surface" name="noise" layer="a"/><Shader name="mat" layer="b"/>
+        <ConnectShaders srclayer="a" srcparam="out" dstlayer="b" dstparam="in"/></ShaderGroup>
+      <ShaderGroup commands="float k 0.5; color c 1 2 3; int n 3; string s &quot;plain text&quot;;
+        shader noise a; shader mat b; connect a.out b.in;"/><Background/></World>"#;
+    Scene::load(text, &[] as &[PathBuf], &keep).unwrap();
+    let specs = keep.0.into_inner();
+    let plain = |spec: &GroupSpec| {
+        let values = |l: &velour::scene::Layer| {
+            l.params.iter().map(|p| (p.name.clone(), p.kind, p.values.clone())).collect::<Vec<_>>()
+        };
+        spec.layers.iter().map(|l| (l.shader.clone(), l.layer_name.clone(), values(l))).collect::<Vec<_>>()
+    };
+    assert_eq!(plain(&specs[0]), plain(&specs[1]));
+    assert_eq!(specs[0].usage, Usage::Surface);
+    assert_eq!(specs[0].connections[0].target_param, specs[1].connections[0].target_param);
+}
