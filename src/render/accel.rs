@@ -159,15 +159,17 @@ pub struct Hit {
     pub v: f32,
 }
 
-/// Up to this many primitives, testing all of them is faster than a hierarchy.
+/// Up to this many primitives, all of them are tested. Measured at seven only; the bound is a guess from the cost of
+/// one test.
 const MOST: usize = 24;
 
 /// How rays find what they hit.
 ///
-/// Measured on one thread, baseline x86-64 build, million closest hits a second (all methods in one run):
-/// figure 1 (7 primitives) `Wide` 10.8, `Binary` 11.0; a bumpy ball of 204,480 triangles, rays from all around, `Wide`
-/// 0.55, `Binary` 0.47 (built in 0.21 s and 0.10 s). Hence `Wide` for meshes. `Few` on figure 1 takes about a third of
-/// the time of `Wide`; within a whole render, closest hits and shadows fell from 32 % to 17 % of it.
+/// Measured on one thread of a shared machine, baseline x86-64 build, million closest hits a second, range of four
+/// runs a method on two occasions: figure 1 (7 primitives) `Wide` 9.0 to 10.8, `Binary` 8.3 to 11.9, no clear winner; a
+/// bumpy ball of 204,480 triangles, rays from all around, `Wide` 0.51 to 0.57, `Binary` 0.36 to 0.49. Hence `Wide` for
+/// meshes, though it takes about twice as long to build (0.2 s against 0.1 s). `Few` was measured inside a whole render
+/// of figure 1 alone: all ray tests together took 32 % of the time with `Wide` and 17 % with `Few`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Every primitive against sixteen rays at a time, no hierarchy; only for a few spheres and quads.
