@@ -1,3 +1,5 @@
-//! The velour command.
+//! The velour command; everything is in the library.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    velour::cli::run()
+}

@@ -7,7 +7,7 @@ mod builder;
 mod error;
 
 pub use builder::GroupBuilder;
-pub use error::{CompileError, GroupError};
+pub use error::{CompileError, GroupError, GroupSubject};
 
 use crate::check::{check, typed};
 use crate::lang::closures::ClosureTable;

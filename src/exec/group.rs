@@ -101,13 +101,26 @@ impl Group {
         self.models.iter().any(other)
     }
 
-    /// Does what it computes differ from point to point?
-    pub fn varies(&self) -> bool {
+    /// Does what it computes differ from point to point of one object?
+    pub fn varies_on_object(&self) -> bool {
         let mut rays = false;
         visit_instrs(&self.program.body, &mut |instr| {
             rays |= matches!(instr, Instr::Call { routine: Routine::RayType, .. });
         });
-        rays || !self.inputs.is_empty()
+        rays || self.inputs.iter().any(|(_, input)| *input != Input::SurfaceArea)
+    }
+
+    /// Where a closure of this name is written first, as `file:line:column`.
+    pub fn place_of(&self, closure: &str) -> String {
+        let mut place = None;
+        visit_instrs(&self.program.body, &mut |instr| {
+            if let Instr::Leaf { closure: id, span, .. } = instr {
+                if place.is_none() && self.table.get(*id).name == closure {
+                    place = Some((self.locate)(*span));
+                }
+            }
+        });
+        place.unwrap_or_default()
     }
 }
 

@@ -192,13 +192,13 @@ impl Wave {
             match kind {
                 event::DIFFUSE => (hit.ray_type, hit.spread) = (ray_type::DIFFUSE, hit.spread.max(DIFFUSE_SPREAD)),
                 event::GLOSSY => (hit.ray_type, hit.spread) = (ray_type::GLOSSY, hit.spread.max(GLOSSY_SPREAD)),
-                event::REFLECT => hit.ray_type = ray_type::REFLECTION,
-                event::REFRACT => hit.ray_type = ray_type::REFRACTION,
+                event::DELTA_REFLECT => hit.ray_type = ray_type::REFLECTION,
+                event::DELTA_REFRACT => hit.ray_type = ray_type::REFRACTION,
                 // Straight through: still the same ray to whoever asks.
                 _ => {}
             }
             match kind {
-                event::THROUGH if path.clear => path.alpha = 0.0,
+                event::STRAIGHT if path.clear => path.alpha = 0.0,
                 _ => path.clear = false,
             }
             self.next.push(i);

@@ -1,5 +1,7 @@
 //! A finished picture, and what is known about how it was made.
 
+use crate::exec::Report;
+
 /// Linear light, row by row from the upper left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
@@ -33,7 +35,7 @@ pub struct About {
     /// Seconds spent on tracing.
     pub seconds_tracing: f64,
     /// What shaders printed, and one line for whatever had to be dropped.
-    pub reports: Vec<String>,
+    pub reports: Vec<Report>,
 }
 
 impl Image {

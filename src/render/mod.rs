@@ -33,9 +33,10 @@ pub use progress::{Progress, Silent};
 pub use settings::{LightStrategy, Settings};
 pub use world::World;
 
+use crate::exec::Report;
 use crate::scene::Scene;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 use tile::Tile;
 use wave::{Dropped, Wave};
@@ -45,7 +46,7 @@ struct Shared {
     pixels: Vec<f32>,
     dropped: Dropped,
     rays: u64,
-    reports: Vec<String>,
+    reports: Vec<Report>,
 }
 
 /// Renders `scene`; tells `progress` of every finished tile.
@@ -62,17 +63,19 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     let pixels = vec![0.0; settings.width as usize * settings.height as usize * channels];
     let shared = Mutex::new(Shared { pixels, dropped: Dropped::default(), rays: 0, reports: Vec::new() });
     let (next, done, total) = (AtomicUsize::new(0), AtomicUsize::new(0), Tile::count(settings));
+    let failed = AtomicBool::new(world.reports.iter().any(|report| matches!(report, Report::Fatal(_))));
     let start = Instant::now();
     pool.broadcast(|_| {
         let mut wave = Wave::new(settings);
         let mut sums = Vec::new();
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= total || progress.cancelled() {
+            if number >= total || progress.cancelled() || failed.load(Ordering::Relaxed) {
                 break;
             }
             let tile = Tile::number(settings, number);
             tile.render(&world, &mut wave, &mut sums);
+            failed.fetch_or(wave.shading.failed(), Ordering::Relaxed);
             if let Ok(mut shared) = shared.lock() {
                 store(&mut shared.pixels, &tile, settings, channels, &sums);
             }
@@ -85,7 +88,11 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
         }
     });
     let seconds_tracing = start.elapsed().as_secs_f64();
-    let shared = shared.into_inner().map_err(|_| "a thread has failed".to_owned())?;
+    let mut shared = shared.into_inner().map_err(|_| "a thread has failed".to_owned())?;
+    shared.reports.extend(world.reports.iter().cloned());
+    if let Some(Report::Fatal(message)) = shared.reports.iter().find(|report| matches!(report, Report::Fatal(_))) {
+        return Err(message.clone());
+    }
     let about = About {
         scene: scene.name.clone(),
         samples: settings.samples,
@@ -110,16 +117,16 @@ fn store(pixels: &mut [f32], tile: &Tile, settings: &Settings, channels: usize, 
 }
 
 /// Each report once, in an order that does not depend on threads.
-fn reports(scene: &Scene, mut reports: Vec<String>, dropped: &Dropped) -> Vec<String> {
-    reports.sort();
+fn reports(scene: &Scene, mut reports: Vec<Report>, dropped: &Dropped) -> Vec<Report> {
+    reports.sort_by_key(|report| format!("{report:?}"));
     reports.dedup();
     if dropped.count > 0 {
         let material = dropped.material.checked_sub(1).and_then(|m| scene.materials.get(m));
         let (place, name) = material.map_or((String::new(), "?"), |m| (format!("{}: ", m.place), m.name.as_str()));
-        reports.push(format!(
-            "{place}warning: shader group `{name}` gave light that is not a finite number; {} contributions were dropped",
+        reports.push(Report::Error(format!(
+            "{place}error: shader group `{name}` gave light that is not a finite number; {} contributions were dropped",
             dropped.count
-        ));
+        )));
     }
     reports
 }

@@ -1,7 +1,9 @@
 //! What a scene needs: decided once, before rendering, so that nothing else is computed.
 
 use super::settings::{LightStrategy, Settings};
-use crate::exec::{Global, Group};
+use crate::exec::Group;
+use crate::lang::closures::Model;
+use crate::lang::globals::Global;
 use crate::scene::Scene;
 use std::fmt;
 
@@ -26,13 +28,14 @@ impl Needs {
     /// What `group` reads.
     pub fn of(group: &Group) -> Self {
         let reads = |globals: &[Global]| globals.iter().any(|g| group.reads(*g));
+        let derives = |globals: &[Global]| globals.iter().any(|g| group.reads_derivative(*g));
         Needs {
-            position: reads(&[Global::P]),
+            position: reads(&[Global::P, Global::Ps]),
             uv: reads(&[Global::U, Global::V]),
             tangents: reads(&[Global::DPdu, Global::DPdv]),
-            position_derivatives: reads(&[Global::PDerivatives]),
-            uv_derivatives: reads(&[Global::UvDerivatives]),
-            direction_derivatives: reads(&[Global::IDerivatives]),
+            position_derivatives: derives(&[Global::P, Global::Ps]),
+            uv_derivatives: derives(&[Global::U, Global::V]),
+            direction_derivatives: derives(&[Global::I]),
         }
     }
 
@@ -44,9 +47,9 @@ impl Needs {
 
 /// True when nothing that changes from point to point of one object reaches the group's result.
 pub fn same_all_over(group: &Group) -> bool {
-    use Global::*;
-    let varying = [P, I, N, Ng, U, V, DPdu, DPdv, PDerivatives, UvDerivatives, IDerivatives, Time, RayType, Backfacing];
-    !varying.iter().any(|g| group.reads(*g))
+    // What a layer lets through depends on the direction of view, though no shader reads it.
+    let layered = group.models().iter().any(|model| matches!(model, Model::Layer | Model::Sheen));
+    !layered && !group.varies_on_object()
 }
 
 /// What one material takes part in.
@@ -97,7 +100,7 @@ impl Plan {
         let lights = if sampling { scene.geometry.primitives.iter().filter(lit).count() } else { 0 };
         let background = scene.background.map(|b| (b, &scene.materials[b.material as usize].surface));
         let constant =
-            background.is_none_or(|(_, g)| g.emission_is_uniform().is_some() || same_all_over(g) || !g.can_emit());
+            background.is_none_or(|(_, g)| same_all_over(g) || !g.can_emit());
         let background_table = match background {
             // A constant sky is what scattering samples already reach best; sampling it as well only adds noise.
             Some((b, _)) if sampling && !constant && b.resolution > 0 => b.resolution.max(32),

@@ -1,7 +1,8 @@
 //! The only door from the renderer to shaders and closures: a batch of points in, emission, light and directions out.
 
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
-use crate::exec::{Group, Machine, Points};
+use crate::closure::tree::Tree;
+use crate::exec::{Group, Machine, Points, Report};
 use crate::math::columns::Column3;
 
 /// Kinds of rays, as `raytype()` tests them.
@@ -20,21 +21,7 @@ pub mod ray_type {
     pub const REFRACTION: i32 = 32;
 }
 
-/// What a sampled direction is, as `Samples::event` numbers it.
-pub mod event {
-    /// Absorbed.
-    pub const NONE: u8 = 0;
-    /// A diffuse bounce.
-    pub const DIFFUSE: u8 = 1;
-    /// A glossy bounce.
-    pub const GLOSSY: u8 = 2;
-    /// A mirror.
-    pub const REFLECT: u8 = 3;
-    /// A clear refraction.
-    pub const REFRACT: u8 = 4;
-    /// Straight through.
-    pub const THROUGH: u8 = 5;
-}
+pub use crate::closure::event;
 
 /// One thread's shader, lobes and columns.
 pub struct Shading {
@@ -51,6 +38,10 @@ pub struct Shading {
     machine: Machine,
     lobes: Lobes,
     viewer: Column3,
+    reports: Vec<Report>,
+    /// True once a shader cannot be run; from then on nothing is shaded.
+    failed: bool,
+    nothing: Tree,
 }
 
 impl Shading {
@@ -65,6 +56,9 @@ impl Shading {
             machine: Machine::new(),
             lobes: Lobes::new(settings),
             viewer: Column3::default(),
+            reports: Vec::new(),
+            failed: false,
+            nothing: Tree::default(),
         }
     }
 
@@ -84,8 +78,34 @@ impl Shading {
             self.viewer.y[lane] = -i.y[lane];
             self.viewer.z[lane] = -i.z[lane];
         }
+        if self.failed {
+            self.nothing.clear(self.points.len);
+            self.lobes.flatten(group.table(), &self.nothing, &self.viewer, &self.points.ng);
+            return;
+        }
         let tree = self.machine.shade(group, &self.points);
-        self.lobes.flatten(tree, &self.viewer, &self.points.ng);
+        self.lobes.flatten(group.table(), tree, &self.viewer, &self.points.ng);
+        self.hear(group);
+    }
+
+    /// Collects what the shader said and which closures were dropped.
+    fn hear(&mut self, group: &Group) {
+        let news = self.machine.take_reports();
+        self.failed |= news.iter().any(|report| matches!(report, Report::Fatal(_)));
+        self.reports.extend(news);
+        for dropped in self.lobes.dropped() {
+            let (place, closure) = (group.place_of(dropped.closure), dropped.closure);
+            let message = format!("{place}: error: `{closure}` is dropped where a parameter or weight of it is not a number");
+            let report = Report::Error(message);
+            if !self.reports.contains(&report) {
+                self.reports.push(report);
+            }
+        }
+    }
+
+    /// True once a shader cannot be run.
+    pub fn failed(&self) -> bool {
+        self.failed
     }
 
     /// Radiance emitted toward the viewer.
@@ -114,7 +134,7 @@ impl Shading {
     }
 
     /// What shaders printed and complained of since the last call.
-    pub fn take_reports(&mut self) -> Vec<String> {
-        self.machine.take_reports()
+    pub fn take_reports(&mut self) -> Vec<Report> {
+        std::mem::take(&mut self.reports)
     }
 }

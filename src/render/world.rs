@@ -8,7 +8,7 @@ use super::settings::Settings;
 use super::shading::{Shading, ray_type};
 use super::sky::SkyTable;
 use super::surface::{RayHitPoint, fill};
-use crate::exec::{Group, MAX_LANES};
+use crate::exec::{Report, Group, MAX_LANES};
 use crate::scene::{Scene, Shape};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -45,6 +45,8 @@ pub struct World<'s> {
     pub sky: Sky,
     /// The radiance of each object, where it is one constant; zero for objects that do not emit.
     pub object_emission: Vec<Option<Vec3>>,
+    /// What shaders said while lights were prepared.
+    pub reports: Vec<Report>,
 }
 
 impl<'s> World<'s> {
@@ -63,6 +65,7 @@ impl<'s> World<'s> {
             lights: Lights::new(&scene.geometry, &powers),
             sky,
             object_emission,
+            reports: shading.take_reports(),
             plan,
             scene,
             settings,
@@ -130,9 +133,6 @@ fn constant_emission(scene: &Scene, plan: &Plan, shading: &mut Shading, object: 
     let group = &scene.materials[material].surface;
     if !plan.materials[material].emits {
         return Some(Vec3::ZERO);
-    }
-    if let Some(radiance) = group.emission_is_uniform() {
-        return Some(Vec3::from_array(radiance)).filter(|r| r.is_finite());
     }
     if !same_all_over(group) {
         return None;
@@ -205,12 +205,6 @@ fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading) -
     let material = background.material as usize;
     let group = &scene.materials[material].surface;
     if plan.constant_background {
-        if let Some(radiance) = group.emission_is_uniform() {
-            let radiance = Vec3::from_array(radiance);
-            if radiance.is_finite() {
-                return Sky::Constant(radiance);
-            }
-        }
         shading.resize(1);
         fill_sky(shading, 0, Vec3::Y, ray_type::CAMERA);
         shading.shade(group);

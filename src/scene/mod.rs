@@ -4,6 +4,7 @@
 //! into something that can be run. Everything a user can get wrong ends here, as one [`SceneError`] with a place.
 
 mod build;
+mod compiler;
 mod error;
 mod geometry;
 mod group;
@@ -13,6 +14,7 @@ mod nearest;
 mod spec;
 mod xml;
 
+pub use compiler::ShaderFiles;
 pub use error::{Place, SceneError};
 pub use geometry::{Geometry, Object, Primitive, Shape};
 pub use group::{Connection, GroupCompiler, GroupSpec, Layer, ParamHints, ParamType, ParamValue, Usage, Values};

@@ -1,0 +1,162 @@
+//! `velour render`: a scene in, an image out.
+
+use super::{CompileArgs, Failure};
+use crate::closure::settings::Shadowing;
+use crate::closure::{self, Layering};
+use crate::exec::Report;
+use crate::render::{Image, Plan, Progress, Settings, output, render};
+use crate::scene::{Scene, SceneError, ShaderFiles};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Arguments of `velour render`.
+#[derive(clap::Args)]
+pub struct RenderArgs {
+    /// A scene file, or the text of a scene
+    scene: String,
+    /// The image: .exr (linear, with a note of how it was made), .png or .hdr
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The image, as testrender takes it
+    #[arg(value_name = "IMAGE", conflicts_with = "output")]
+    image: Option<PathBuf>,
+    /// Threads; 0 for one a core
+    #[arg(short, long, default_value_t = 0, value_name = "N")]
+    threads: usize,
+    /// Width and height in pixels
+    #[arg(short, long, num_args = 2, value_names = ["W", "H"], default_values_t = [640, 480])]
+    res: Vec<u32>,
+    /// N x N samples a pixel
+    #[arg(long, value_name = "N", conflicts_with = "spp")]
+    aa: Option<u32>,
+    /// Samples a pixel [default: 64]
+    #[arg(long, value_name = "N")]
+    spp: Option<u32>,
+    /// Seed of the random numbers
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    seed: u32,
+    /// The most bounces of a path; the scene's own Option wins
+    #[arg(long, value_name = "N")]
+    max_bounces: Option<u32>,
+    /// Folders to look for shaders and meshes in, after the scene's own; separated by colons
+    #[arg(long, value_name = "DIRS", value_delimiter = ':')]
+    path: Vec<PathBuf>,
+    /// How a base is scaled under its layer: min, view or kelemen
+    #[arg(long, default_value = "min")]
+    layering: Layering,
+    /// Shadowing term of sheen: exact, published or ashikhmin
+    #[arg(long, default_value = "exact")]
+    shadowing: Shadowing,
+    /// Soften the terminator of sheen by eq. 4 of the paper: true or false
+    #[arg(long, default_value_t = true, action = clap::ArgAction::Set, value_name = "BOOL")]
+    softening: bool,
+    /// Send every sample through its pixel's centre
+    #[arg(long)]
+    no_jitter: bool,
+    /// Keep an alpha channel
+    #[arg(long)]
+    alpha: bool,
+    /// Say what the scene needs, and what it does not, before rendering
+    #[arg(long)]
+    explain: bool,
+    #[command(flatten)]
+    compile: CompileArgs,
+}
+
+/// A bar on a terminal, nothing elsewhere.
+struct Bar {
+    bar: ProgressBar,
+}
+
+impl Bar {
+    fn new() -> Self {
+        // indicatif draws nothing when standard error is no terminal.
+        let bar = ProgressBar::new(0);
+        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left");
+        if let Ok(style) = style {
+            bar.set_style(style);
+        }
+        Bar { bar }
+    }
+}
+
+impl Progress for Bar {
+    fn tiles(&self, done: usize, total: usize) {
+        self.bar.set_length(total as u64);
+        self.bar.set_position(done as u64);
+    }
+}
+
+/// Renders the scene and writes the image.
+pub fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    let path = args.output.as_ref().or(args.image.as_ref());
+    let path = path.ok_or_else(|| Failure::Usage("error: no image is named\n  help: add `-o picture.png`".to_owned()))?;
+    output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    let compiler = ShaderFiles::new(args.compile.compiler()?);
+    let scene = Scene::load(&args.scene, &args.path, &compiler).map_err(failure)?;
+    for warning in &scene.warnings {
+        eprintln!("{warning}");
+    }
+    let settings = settings(args).with_options(&scene.options);
+    if args.explain {
+        print!("{}", Plan::new(&scene, &settings));
+    }
+    let bar = Bar::new();
+    let image = render(&scene, &settings, &bar).map_err(Failure::Wrong)?;
+    bar.bar.finish_and_clear();
+    tell(&image.about.reports);
+    output::write(&image, path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    eprintln!("{}", last_line(&image, path, start.elapsed().as_secs_f64()));
+    Ok(())
+}
+
+fn failure(error: SceneError) -> Failure {
+    // Without a place the scene file itself could not be read.
+    if error.place.is_none() { Failure::Usage(error.to_string()) } else { Failure::Wrong(error.to_string()) }
+}
+
+fn settings(args: &RenderArgs) -> Settings {
+    let defaults = Settings::default();
+    Settings {
+        width: args.res[0],
+        height: args.res[1],
+        samples: args.spp.or(args.aa.map(|aa| aa.saturating_mul(aa))).unwrap_or(64),
+        seed: args.seed,
+        threads: args.threads,
+        max_bounces: args.max_bounces.unwrap_or(defaults.max_bounces),
+        jitter: !args.no_jitter,
+        alpha: args.alpha,
+        closure: closure::Settings {
+            layering: args.layering,
+            shadowing: args.shadowing,
+            softening: args.softening,
+            ..defaults.closure
+        },
+        ..defaults
+    }
+}
+
+/// Passes on what shaders said.
+fn tell(reports: &[Report]) {
+    for report in reports {
+        match report {
+            Report::Output(text) => print!("{text}"),
+            Report::File(name, text) => eprint!("{name}: {text}"),
+            Report::Warning(text) | Report::Error(text) | Report::Fatal(text) => eprintln!("{text}"),
+        }
+    }
+}
+
+fn last_line(image: &Image, path: &std::path::Path, seconds: f64) -> String {
+    let about = &image.about;
+    let rate = about.paths as f64 / about.seconds_tracing.max(1e-9) / 1e6;
+    format!(
+        "{}: {} x {}, {} samples a pixel, {seconds:.2} s, {rate:.2} million paths a second",
+        path.display(),
+        image.width,
+        image.height,
+        about.samples
+    )
+}

@@ -1,0 +1,116 @@
+//! `velour tree`: shows what a shader's `Ci` is, at one point, as a tree or as flattened lobes.
+
+use super::{CompileArgs, Failure};
+use crate::closure::print::tree_text;
+use crate::closure::{Layering, Lobes, Settings};
+use crate::closure::settings::Shadowing;
+use crate::exec::{Group, Machine, Points, Report};
+use crate::ir::lower::Binding;
+use crate::math::columns::Column3;
+use glam::Vec3;
+use std::path::PathBuf;
+
+/// Arguments of `velour tree`.
+#[derive(clap::Args)]
+pub struct TreeArgs {
+    /// A shader file
+    file: PathBuf,
+    /// Set a parameter: numbers with commas between, or a string
+    #[arg(long, num_args = 2, value_names = ["NAME", "VALUE"], allow_hyphen_values = true, action = clap::ArgAction::Append)]
+    param: Vec<String>,
+    /// Show the flattened lobes with their weights and albedos
+    #[arg(long)]
+    lobes: bool,
+    /// Cosine of the angle of view
+    #[arg(long, default_value_t = 1.0, value_name = "COS")]
+    view: f32,
+    /// Surface coordinates of the point
+    #[arg(long, num_args = 2, value_names = ["U", "V"], default_values_t = [0.5, 0.5])]
+    uv: Vec<f32>,
+    /// How a base is scaled under its layer: min, view or kelemen
+    #[arg(long, default_value = "min")]
+    layering: Layering,
+    /// Shadowing term of sheen: exact, published or ashikhmin
+    #[arg(long, default_value = "exact")]
+    shadowing: Shadowing,
+    /// Show the program as well
+    #[arg(long)]
+    program: bool,
+    #[command(flatten)]
+    compile: CompileArgs,
+}
+
+/// Shades one point and prints its tree.
+pub fn run(args: &TreeArgs) -> Result<(), Failure> {
+    let shader = args.compile.compiler()?.compile_file(&args.file).map_err(|error| match error {
+        crate::compile::CompileError::File { .. } => Failure::Usage(error.to_string()),
+        other => Failure::Wrong(other.to_string()),
+    })?;
+    let mut builder = shader.group();
+    for pair in args.param.chunks(2) {
+        builder = builder.bind(&pair[0], binding(&pair[1]));
+    }
+    let group = builder.build().map_err(|error| Failure::Wrong(error.to_string()))?;
+    if args.program {
+        print!("{}", crate::ir::print::program_text(group.program()));
+    }
+    let points = point(args);
+    let mut machine = Machine::new();
+    let tree = machine.shade(&group, &points);
+    let text = if args.lobes {
+        lobe_table(args, &group, tree, &points)
+    } else {
+        tree_text(group.table(), tree, 0)
+    };
+    for report in machine.take_reports() {
+        match report {
+            Report::Output(text) => print!("{text}"),
+            Report::File(_, text) => print!("{text}"),
+            Report::Warning(text) | Report::Error(text) => eprintln!("{text}"),
+            Report::Fatal(text) => return Err(Failure::Wrong(text)),
+        }
+    }
+    println!("{}", if text.is_empty() { "0" } else { &text });
+    Ok(())
+}
+
+/// Numbers when the text is numbers, a string otherwise.
+fn binding(text: &str) -> Binding {
+    let parts = text.split([',', ' ']).filter(|part| !part.is_empty());
+    let numbers: Result<Vec<f64>, _> = parts.map(str::parse).collect();
+    match numbers {
+        Ok(numbers) if !numbers.is_empty() => Binding::Numbers(numbers),
+        _ => Binding::Strings(vec![text.to_owned()]),
+    }
+}
+
+fn point(args: &TreeArgs) -> Points {
+    let cos = args.view.clamp(-1.0, 1.0);
+    let eye = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+    let mut points = Points::single(eye);
+    points.u[0] = args.uv[0];
+    points.v[0] = args.uv[1];
+    points.p.set(0, Vec3::new(args.uv[0], args.uv[1], 0.0));
+    points
+}
+
+fn lobe_table(args: &TreeArgs, group: &Group, tree: &crate::closure::tree::Tree, points: &Points) -> String {
+    let settings = Settings { layering: args.layering, shadowing: args.shadowing, ..Settings::default() };
+    let mut lobes = Lobes::new(settings);
+    let wo = Column3::splat(-points.i.get(0), 1);
+    lobes.flatten(group.table(), tree, &wo, &points.ng);
+    let mut out = format!("{:<14} {:<26} {:>7} {:>6} {:>8} {:>6}", "lobe", "weight", "albedo", "depth", "through", "pick");
+    for lobe in lobes.describe(0) {
+        let [r, g, b] = lobe.weight;
+        let weight = format!("({r:.4}, {g:.4}, {b:.4})");
+        out += &format!(
+            "\n{:<14} {weight:<26} {:>7.4} {:>6} {:>8.4} {:>6.4}",
+            lobe.closure, lobe.albedo, lobe.depth, lobe.through, lobe.pick
+        );
+    }
+    let emission = lobes.emission().get(0);
+    if emission != Vec3::ZERO {
+        out += &format!("\nemission       ({:.4}, {:.4}, {:.4})", emission.x, emission.y, emission.z);
+    }
+    out
+}

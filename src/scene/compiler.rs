@@ -1,0 +1,107 @@
+//! The compiler of a scene's shader groups: finds shader files, compiles each once, binds and joins them.
+
+use super::error::SceneError;
+use super::group::{GroupCompiler, GroupSpec, Layer, Values};
+use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Shader};
+use crate::exec::Group;
+use crate::ir::lower::Binding;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// Compiles groups from `.osl` files and from shaders in memory.
+#[derive(Debug, Default)]
+pub struct ShaderFiles {
+    /// Include folders, macros, header and closures for all shaders.
+    pub compiler: Compiler,
+    memory: HashMap<String, Shader>,
+    files: Mutex<HashMap<PathBuf, Shader>>,
+}
+
+impl ShaderFiles {
+    /// Uses a compiler that has been set up by the host.
+    pub fn new(compiler: Compiler) -> Self {
+        ShaderFiles { compiler, ..Self::default() }
+    }
+
+    /// Adds a shader that is not in a file; it is found before any file of its name.
+    ///
+    /// # Errors
+    /// The text is wrong.
+    pub fn with_shader(mut self, text: &str) -> Result<Self, CompileError> {
+        let shader = self.compiler.compile("memory", text)?;
+        self.memory.insert(shader.name().to_owned(), shader);
+        Ok(self)
+    }
+
+    fn shader(&self, layer: &Layer, search: &[PathBuf]) -> Result<Shader, SceneError> {
+        if let Some(shader) = self.memory.get(&layer.shader) {
+            return Ok(shader.clone());
+        }
+        let Some(path) = find(&layer.shader, search) else {
+            let folders: Vec<String> = search.iter().map(|folder| folder.display().to_string()).collect();
+            let message = format!("shader `{}` is not found", layer.shader);
+            let help = format!("no `{}.osl` in {}; add folders with --path", layer.shader, folders.join(", "));
+            return Err(SceneError::at(layer.place.clone(), message).with_help(help));
+        };
+        let mut files = self.files.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(shader) = files.get(&path) {
+            return Ok(shader.clone());
+        }
+        let shader = self.compiler.compile_file(&path).map_err(|error| {
+            let message = format!("shader `{}` does not compile\n{error}", layer.shader);
+            SceneError::at(layer.place.clone(), message)
+        })?;
+        files.insert(path, shader.clone());
+        Ok(shader)
+    }
+}
+
+/// The file of a shader: `name.osl` or `name` in one of the folders, or `name` as a path.
+fn find(name: &str, search: &[PathBuf]) -> Option<PathBuf> {
+    let name = name.strip_suffix(".oso").unwrap_or(name);
+    let with_extension = if name.ends_with(".osl") { name.to_owned() } else { format!("{name}.osl") };
+    let candidates = search.iter().map(|folder| folder.join(&with_extension));
+    candidates.chain([PathBuf::from(&with_extension)]).find(|path: &PathBuf| Path::is_file(path))
+}
+
+impl GroupCompiler for ShaderFiles {
+    fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
+        let mut builder = GroupBuilder::new(self.compiler.closures.clone());
+        for layer in &spec.layers {
+            let shader = self.shader(layer, &spec.search)?;
+            builder = builder.layer(&layer.layer_name, &shader);
+            for param in &layer.params {
+                let binding = match &param.values {
+                    Values::Floats(values) => Binding::Numbers(values.iter().map(|&x| f64::from(x)).collect()),
+                    Values::Ints(values) => Binding::Numbers(values.iter().map(|&x| f64::from(x)).collect()),
+                    Values::Strings(values) => Binding::Strings(values.clone()),
+                };
+                builder = builder.bind(&param.name, binding);
+            }
+        }
+        for c in &spec.connections {
+            builder = builder.connect((&c.source_layer, &c.source_param), (&c.target_layer, &c.target_param));
+        }
+        builder.build().map_err(|error| placed(error, spec))
+    }
+}
+
+/// A group's error at the place in the scene that it is about.
+fn placed(error: GroupError, spec: &GroupSpec) -> SceneError {
+    let layer = |name: &str| spec.layers.iter().find(|layer| layer.layer_name == name);
+    let place = match &error.subject {
+        GroupSubject::Param { layer: at, name } => {
+            let param = layer(at).and_then(|layer| layer.params.iter().find(|param| param.name == *name));
+            let joined = spec.connections.iter().find(|c| {
+                (c.target_layer == *at && c.target_param == *name) || (c.source_layer == *at && c.source_param == *name)
+            });
+            param.map(|param| &param.place).or(joined.map(|c| &c.place))
+        }
+        GroupSubject::Layer(name) => {
+            let joined = spec.connections.iter().find(|c| c.target_layer == *name || c.source_layer == *name);
+            joined.map(|c| &c.place).or(layer(name).map(|layer| &layer.place))
+        }
+    };
+    SceneError::at(place.unwrap_or(&spec.place).clone(), error.message).with_help(error.help)
+}
