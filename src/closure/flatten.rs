@@ -203,7 +203,8 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
             Node::Select { mask, then, otherwise } => {
                 let yes = then.map(|_| sweep.masked(n, weight, |lane| tree.int(mask, lane) != 0));
                 let no = otherwise.map(|_| sweep.masked(n, weight, |lane| tree.int(mask, lane) == 0));
-                yes.is_none_or(|w| sweep.send(n, then, layer, w)) && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
+                yes.is_none_or(|w| sweep.send(n, then, layer, w))
+                    && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
             }
             Node::Leaf { .. } => leaf.as_ref().is_none_or(|(leaf, name)| place(lobes, tree, leaf, name, layer, weight)),
         };
@@ -296,7 +297,9 @@ fn add_lobe(
             drop_lane(&mut lobes.dropped, name, lane);
         }
         if broken || absent {
-            at.map(|i| lobes.weights[i] = 0.0);
+            for i in at {
+                lobes.weights[i] = 0.0;
+            }
         }
         any |= !(broken || absent) && w != [0.0; 3];
     }
@@ -309,7 +312,14 @@ fn add_lobe(
 }
 
 /// Writes the albedo of every tree that lies on top of something as steps, children first.
-fn build_steps(sweep: &mut Sweep, layers: &mut Layers, surfaces: &mut Surfaces, table: &ClosureTable, tree: &Tree, root: NodeId) {
+fn build_steps(
+    sweep: &mut Sweep,
+    layers: &mut Layers,
+    surfaces: &mut Surfaces,
+    table: &ClosureTable,
+    tree: &Tree,
+    root: NodeId,
+) {
     if !sweep.in_top.iter().any(|&needed| needed) {
         return;
     }

@@ -117,7 +117,8 @@ impl Lobes {
                     let frame = &self.surfaces.frames()[surface.frame as usize];
                     let (local, eta) = (frame.wo.get(lane), self.surfaces.param(surface, 0, lane));
                     let mirror = surface.kind == Kind::Reflection;
-                    let Specular { wi: to, part } = if mirror { reflection(local, eta) } else { refraction(local, eta) };
+                    let Specular { wi: to, part } =
+                        if mirror { reflection(local, eta) } else { refraction(local, eta) };
                     let axes = Frame {
                         tangent: frame.tangent.get(lane),
                         bitangent: frame.bitangent.get(lane),

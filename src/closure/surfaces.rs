@@ -236,7 +236,14 @@ impl Surfaces {
     }
 
     /// The frame of a normal and tangent; one that was made for the same columns is used again.
-    pub fn frame(&mut self, tree: &Tree, normal: [Floats; 3], tangent: Option<[Floats; 3]>, wo: &Column3, ng: &Column3) -> u32 {
+    pub fn frame(
+        &mut self,
+        tree: &Tree,
+        normal: [Floats; 3],
+        tangent: Option<[Floats; 3]>,
+        wo: &Column3,
+        ng: &Column3,
+    ) -> u32 {
         let newest = self.frames_used.saturating_sub(FRAMES_COMPARED);
         let key = Some((normal, tangent));
         if let Some(found) = (newest..self.frames_used).find(|&i| self.frames[i].key == key) {

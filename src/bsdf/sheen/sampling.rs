@@ -9,8 +9,8 @@
 
 use super::fits::{ProposalFit, proposal_fit};
 use super::shadowing::Shadowing;
-use crate::math::elementary::exp;
 use crate::bsdf::select;
+use crate::math::elementary::exp;
 use crate::math::warp::{cosine_hemisphere, uniform_hemisphere, uniform_hemisphere_pdf};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;

@@ -3,8 +3,8 @@
 //! The paper fits Lambda because the projected-area integral "has no easy solution". It has one: with n = 1/r,
 //! c (1 + 2 Lambda(c)) = f(c) = 2F1(-1/2, -n/2; 1; 1 - c²), hence G / (4 ci co) = 1 / (2 (f_i co + f_o ci)).
 
-use crate::math::elementary::{exp, ln};
 use crate::bsdf::select;
+use crate::math::elementary::{exp, ln};
 use std::fmt;
 use std::str::FromStr;
 
