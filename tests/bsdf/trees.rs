@@ -65,7 +65,7 @@ fn ten_thousand_summed_lobes_and_nested_layers() {
     let mut lobes = flatten(Settings::default(), &tree, 0.6);
     assert_eq!(lobes.len(), 15_000);
     let total = integrate(&mut lobes, 2, &hemisphere(3, 4, 0.6))[0][0];
-    assert!(total > 0.5 && total < 1.01, "{total}");
+    assert!(total > 0.9 && total < 1.2, "{total}");
 }
 
 #[test]
