@@ -213,12 +213,20 @@ fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &Arguments, 
         let request = Request { kind, closure: arguments.spec.name, frame, params, count: 2, eta: None, gate };
         let surface = surfaces.push(tree, request);
         let made = surfaces.list[surface as usize];
-        // A sheen that is dropped for its parameters takes nothing from its base.
-        let exists: Vec<bool> = (0..surfaces.lanes).map(|lane| surfaces.gate(&made, lane) > 0.0).collect();
-        let t = surfaces.push_column(|lane| {
-            let largest = tint.iter().map(|&c| tree.float(c, lane)).fold(0.0, f32::max);
-            if exists[lane] && largest.is_finite() { largest } else { 0.0 }
-        });
+        let t = match tint {
+            [Floats::Uniform(x), Floats::Uniform(y), Floats::Uniform(z)] if made.gate == NONE => {
+                let largest = x.max(y).max(z).max(0.0);
+                surfaces.push_constant(if largest.is_finite() { largest } else { 0.0 })
+            }
+            _ => {
+                // A sheen that is dropped for its parameters takes nothing from its base.
+                let exists: Vec<bool> = (0..surfaces.lanes).map(|lane| surfaces.gate(&made, lane) > 0.0).collect();
+                surfaces.push_column(|lane| {
+                    let largest = tint.iter().map(|&c| tree.float(c, lane)).fold(0.0, f32::max);
+                    if exists[lane] && largest.is_finite() { largest } else { 0.0 }
+                })
+            }
+        };
         leaf.parts.push(Part { surface, t });
         leaf.covers.push(Cover { surface: Some(surface), t, rule: Layering::ALL[(code % 3) as usize].1, gate });
     }
