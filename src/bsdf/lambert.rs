@@ -1,6 +1,6 @@
 //! Lambert's reflection and transmission: the same radiance in every direction of one hemisphere.
 
-use super::{Eval, Scatter};
+use super::{Eval, Scatter, View};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::Vec3;
 
@@ -24,13 +24,13 @@ impl Scatter for Lambert {
     }
 
     #[inline(always)]
-    fn eval(&self, _wo: Vec3, wi: Vec3) -> Eval {
+    fn eval_from(&self, _wo: Vec3, _view: View, wi: Vec3) -> Eval {
         let pdf = cosine_hemisphere_pdf(wi.z);
         Eval { f_cos: pdf, pdf }
     }
 
     #[inline(always)]
-    fn sample(&self, _wo: Vec3, xi: Vec3) -> Vec3 {
+    fn sample_from(&self, _wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
         cosine_hemisphere(xi.x, xi.y)
     }
 
@@ -50,13 +50,13 @@ impl Scatter for Translucent {
     }
 
     #[inline(always)]
-    fn eval(&self, _wo: Vec3, wi: Vec3) -> Eval {
+    fn eval_from(&self, _wo: Vec3, _view: View, wi: Vec3) -> Eval {
         let pdf = cosine_hemisphere_pdf(-wi.z);
         Eval { f_cos: pdf, pdf }
     }
 
     #[inline(always)]
-    fn sample(&self, _wo: Vec3, xi: Vec3) -> Vec3 {
+    fn sample_from(&self, _wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
         let up = cosine_hemisphere(xi.x, xi.y);
         Vec3::new(up.x, up.y, -up.z)
     }

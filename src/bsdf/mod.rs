@@ -13,6 +13,7 @@ pub mod fresnel;
 pub mod lambert;
 pub mod microfacet;
 pub mod oren_nayar;
+pub mod power;
 pub mod sheen;
 pub mod specular;
 
@@ -27,6 +28,9 @@ pub struct Eval {
     pub pdf: f32,
 }
 
+/// Up to five numbers that a model derives from the viewer's direction.
+pub type View = [f32; 5];
+
 /// A scattering model with its constants, as the lane loops see it.
 ///
 /// Directions are unit, local (z = shading normal) and point away from the surface; `wo.z` is positive.
@@ -37,10 +41,27 @@ pub trait Scatter: Copy {
     const TRANSMITS: bool;
     /// Makes the constants from parameters, which are clamped to what the model supports.
     fn prepare(params: [f32; 4]) -> Self;
+    /// How many of the numbers of [`Scatter::view`] it uses.
+    const VIEW: usize = 0;
+    /// What depends on the viewer alone, computed once for all directions that are evaluated.
+    #[inline(always)]
+    fn view(&self, _wo: Vec3) -> View {
+        View::default()
+    }
     /// f |cos_i| and density of one direction; zero where the model scatters nothing, never NaN.
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval;
+    fn eval_from(&self, wo: Vec3, view: View, wi: Vec3) -> Eval;
     /// A direction for three numbers in [0, 1); it may lie where `eval` gives zero, and is zero when there is none.
-    fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3;
+    fn sample_from(&self, wo: Vec3, view: View, xi: Vec3) -> Vec3;
+    /// [`Scatter::eval_from`] without a view at hand.
+    #[inline(always)]
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
+        self.eval_from(wo, self.view(wo), wi)
+    }
+    /// [`Scatter::sample_from`] without a view at hand.
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3 {
+        self.sample_from(wo, self.view(wo), xi)
+    }
     /// Directional albedo at this cosine, an estimate that each model documents.
     fn albedo(&self, cos: f32) -> f32;
     /// Mean of the albedo over the hemisphere, weighted by the cosine.

@@ -1,6 +1,6 @@
 //! Rough diffuse reflection of Oren and Nayar, the qualitative model of 1994.
 
-use super::{Eval, Scatter, select};
+use super::{Eval, Scatter, View, select};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI};
@@ -60,7 +60,7 @@ impl Scatter for OrenNayar {
     }
 
     #[inline(always)]
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
+    fn eval_from(&self, wo: Vec3, _view: View, wi: Vec3) -> Eval {
         let limit = self.published_albedo(wo.z).max(self.published_albedo(wi.z)).max(1.0);
         let f = self.published(wo, wi) / limit;
         let pdf = cosine_hemisphere_pdf(wi.z);
@@ -68,7 +68,7 @@ impl Scatter for OrenNayar {
     }
 
     #[inline(always)]
-    fn sample(&self, _wo: Vec3, xi: Vec3) -> Vec3 {
+    fn sample_from(&self, _wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
         cosine_hemisphere(xi.x, xi.y)
     }
 

@@ -4,7 +4,7 @@
 //! an input, and turn the loops into SIMD. No target enables fused multiply-add, so every target gives the same bits.
 
 use super::settings::Layering;
-use crate::bsdf::{Scatter, select};
+use crate::bsdf::{Scatter, View, select};
 use crate::math::frame::Frame;
 use glam::Vec3;
 use multiversion::multiversion;
@@ -84,11 +84,51 @@ impl<'a> Triples<'a> {
     }
 }
 
+/// The columns of what a model derives from the viewer; fewer than five for most models.
+#[derive(Clone, Copy)]
+pub struct Views<'a>(pub &'a [f32]);
+
+impl<'a> Views<'a> {
+    /// Five columns, of which those beyond the model's are never read.
+    #[inline(always)]
+    fn narrow<M: Scatter>(self, lanes: usize) -> [&'a [f32]; 5] {
+        std::array::from_fn(|k| if k < M::VIEW { &self.0[k * lanes..][..lanes] } else { &self.0[..0] })
+    }
+}
+
+/// One lane of the views.
+#[inline(always)]
+fn view_at<M: Scatter>(columns: &[&[f32]; 5], lane: usize) -> View {
+    std::array::from_fn(|k| if k < M::VIEW { columns[k][lane] } else { 0.0 })
+}
+
+/// Computes what a model derives from the viewer, one column after the other.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn view_lanes<M: Scatter, S: Source<M>>(source: S, wo: Triples<'_>, out: &mut [f32]) {
+    let n = wo.x.len();
+    let (wo, source) = (wo.narrow(n), source.narrow(n));
+    let (a, rest) = out.split_at_mut(if M::VIEW > 0 { n } else { 0 });
+    let (b, rest) = rest.split_at_mut(if M::VIEW > 1 { n } else { 0 });
+    let (c, rest) = rest.split_at_mut(if M::VIEW > 2 { n } else { 0 });
+    let (d, rest) = rest.split_at_mut(if M::VIEW > 3 { n } else { 0 });
+    let e = &mut rest[..if M::VIEW > 4 { n } else { 0 }];
+    for i in 0..n {
+        let view = source.at(i).view(wo.at(i));
+        for (k, column) in [&mut *a, &mut *b, &mut *c, &mut *d, &mut *e].into_iter().enumerate() {
+            if k < M::VIEW {
+                column[i] = view[k];
+            }
+        }
+    }
+}
+
 /// What [`evaluate_lanes`] reads beside the model.
 #[derive(Clone, Copy)]
 pub struct LobeColumns<'a> {
     /// Local direction to the viewer.
     pub wo: Triples<'a>,
+    /// What the model derives from the viewer.
+    pub views: Views<'a>,
     /// Local direction to the light.
     pub wi: Triples<'a>,
     /// Positive where both lie on one side of the geometric surface.
@@ -117,10 +157,11 @@ pub fn evaluate_lanes<M: Scatter, S: Source<M>>(
     let n = pdf.len();
     let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
     let (wo, wi, weight) = (from.wo.narrow(n), from.wi.narrow(n), from.weight.narrow(n));
+    let views = from.views.narrow::<M>(n);
     let (side, scale, pick) = (&from.side[..n], &from.scale[..n], &from.pick[..n]);
     let source = source.narrow(n);
     for i in 0..n {
-        let value = source.at(i).eval(wo.at(i), wi.at(i));
+        let value = source.at(i).eval_from(wo.at(i), view_at::<M>(&views, i), wi.at(i));
         let visible = if M::TRANSMITS { side[i] < 0.0 } else { side[i] > 0.0 };
         let f_cos = select(visible, value.f_cos, 0.0) * scale[i];
         x[i] += weight.x[i] * f_cos;
@@ -134,7 +175,7 @@ pub fn evaluate_lanes<M: Scatter, S: Source<M>>(
 #[multiversion(targets("x86_64+avx2"))]
 pub fn sample_lanes<M: Scatter, S: Source<M>>(
     source: S,
-    wo: Triples<'_>,
+    viewer: (Triples<'_>, Views<'_>),
     axes: [Triples<'_>; 3],
     xi: Triples<'_>,
     chosen: (&[u32], u32),
@@ -144,11 +185,12 @@ pub fn sample_lanes<M: Scatter, S: Source<M>>(
 ) {
     let n = x.len();
     let (y, z) = (&mut y[..n], &mut z[..n]);
-    let (wo, xi, source) = (wo.narrow(n), xi.narrow(n), source.narrow(n));
+    let (wo, views) = (viewer.0.narrow(n), viewer.1.narrow::<M>(n));
+    let (xi, source) = (xi.narrow(n), source.narrow(n));
     let (tangent, bitangent, normal) = (axes[0].narrow(n), axes[1].narrow(n), axes[2].narrow(n));
     let (chosen, lobe) = (&chosen.0[..n], chosen.1);
     for i in 0..n {
-        let local = source.at(i).sample(wo.at(i), xi.at(i));
+        let local = source.at(i).sample_from(wo.at(i), view_at::<M>(&views, i), xi.at(i));
         let frame = Frame { tangent: tangent.at(i), bitangent: bitangent.at(i), normal: normal.at(i) };
         let wi = frame.to_world(local);
         let mine = chosen[i] == lobe;
@@ -173,6 +215,101 @@ pub fn average_lanes<M: Scatter, S: Source<M>>(source: S, out: &mut [f32]) {
     let source = source.narrow(out.len());
     for (i, value) in out.iter_mut().enumerate() {
         *value = source.at(i).average_albedo();
+    }
+}
+
+/// What [`normal_lanes`] reads.
+#[derive(Clone, Copy)]
+pub struct NormalColumns<'a> {
+    /// Normals as the shader gave them.
+    pub given: Triples<'a>,
+    /// Directions to the viewer.
+    pub wo: Triples<'a>,
+    /// Geometric normals.
+    pub ng: Triples<'a>,
+}
+
+/// Unit normals to shade with; `inside` is 1 where the viewer is on the inner side, `broken` where the normal is no number.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn normal_lanes(
+    from: NormalColumns<'_>,
+    x: &mut [f32],
+    y: &mut [f32],
+    z: &mut [f32],
+    inside: &mut [f32],
+    broken: &mut [f32],
+) {
+    /// Below this the cosine of the viewer counts as negative.
+    const LEAST: f32 = 1e-6;
+    let n = x.len();
+    let (y, z, inside, broken) = (&mut y[..n], &mut z[..n], &mut inside[..n], &mut broken[..n]);
+    let (given, wo, ng) = (from.given.narrow(n), from.wo.narrow(n), from.ng.narrow(n));
+    for i in 0..n {
+        let (g, o, geometric) = (given.at(i), wo.at(i), ng.at(i));
+        let scale = g.x.abs().max(g.y.abs()).max(g.z.abs());
+        // The sum is finite only when all three are; max() alone would pass over a NaN.
+        let finite = (g.x.abs() + g.y.abs() + g.z.abs()) * 0.0 == 0.0;
+        let usable = finite & (scale > 1e-18);
+        let fallback = choose(geometric.dot(geometric) > 0.5, geometric, o);
+        // Dividing by the largest component first keeps the square of tiny and huge normals in range.
+        let small = g * (1.0 / select(usable, scale, 1.0));
+        let unit = choose(usable, small * (1.0 / small.dot(small).max(1e-30).sqrt()), fallback);
+        let behind = unit.dot(geometric) * o.dot(geometric) < 0.0;
+        let unit = unit * select(behind, -1.0, 1.0);
+        let cos = unit.dot(o);
+        let bent = unit + o * (LEAST - cos).max(0.0);
+        let length2 = bent.dot(bent);
+        let bent = choose(length2 > 1e-12, bent * (1.0 / length2.max(1e-12).sqrt()), o);
+        let normal = choose(cos < LEAST, bent, unit);
+        x[i] = normal.x;
+        y[i] = normal.y;
+        z[i] = normal.z;
+        inside[i] = select(behind, 1.0, 0.0);
+        broken[i] = select(finite, 0.0, 1.0);
+    }
+}
+
+/// One lane's choice between two triples.
+#[inline(always)]
+fn choose(condition: bool, yes: Vec3, no: Vec3) -> Vec3 {
+    Vec3::new(select(condition, yes.x, no.x), select(condition, yes.y, no.y), select(condition, yes.z, no.z))
+}
+
+/// Tangents and bitangents of normals, of any azimuth.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn tangent_lanes(
+    normal: Triples<'_>,
+    tx: &mut [f32],
+    ty: &mut [f32],
+    tz: &mut [f32],
+    bx: &mut [f32],
+    by: &mut [f32],
+    bz: &mut [f32],
+) {
+    let n = tx.len();
+    let (ty, tz, bx, by, bz) = (&mut ty[..n], &mut tz[..n], &mut bx[..n], &mut by[..n], &mut bz[..n]);
+    let normal = normal.narrow(n);
+    for i in 0..n {
+        let frame = Frame::from_normal(normal.at(i));
+        (tx[i], ty[i], tz[i]) = (frame.tangent.x, frame.tangent.y, frame.tangent.z);
+        (bx[i], by[i], bz[i]) = (frame.bitangent.x, frame.bitangent.y, frame.bitangent.z);
+    }
+}
+
+/// Weights of samples from f cos and density: zero, with density zero, where nothing finite comes.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn weigh_lanes(f_cos: Triples<'_>, density: &[f32], x: &mut [f32], y: &mut [f32], z: &mut [f32], pdf: &mut [f32]) {
+    let n = pdf.len();
+    let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
+    let (f_cos, density) = (f_cos.narrow(n), &density[..n]);
+    for i in 0..n {
+        let w = f_cos.at(i) * (1.0 / density[i].max(f32::MIN_POSITIVE));
+        let sum = w.x.abs() + w.y.abs() + w.z.abs();
+        let good = (sum > 0.0) & (sum < f32::INFINITY) & (density[i] > 0.0) & (density[i] < f32::INFINITY);
+        x[i] = select(good, w.x, 0.0);
+        y[i] = select(good, w.y, 0.0);
+        z[i] = select(good, w.z, 0.0);
+        pdf[i] = select(good, density[i], 0.0);
     }
 }
 

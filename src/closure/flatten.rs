@@ -203,7 +203,8 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
             Node::Select { mask, then, otherwise } => {
                 let yes = then.map(|_| sweep.masked(n, weight, |lane| tree.int(mask, lane) != 0));
                 let no = otherwise.map(|_| sweep.masked(n, weight, |lane| tree.int(mask, lane) == 0));
-                yes.is_none_or(|w| sweep.send(n, then, layer, w)) && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
+                yes.is_none_or(|w| sweep.send(n, then, layer, w))
+                    && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
             }
             Node::Leaf { .. } => leaf.as_ref().is_none_or(|(leaf, name)| place(lobes, tree, leaf, name, layer, weight)),
         };
@@ -279,10 +280,20 @@ fn add_lobe(
     let start = lobes.weights.len();
     let made = &lobes.surfaces.list[surface as usize];
     for component in 0..3 {
-        for lane in 0..n {
-            let factor = tint.map_or(1.0, |t| tree.float(t[component], lane));
-            lobes.weights.push(lobes.sweep.get(weight, component, lane, n) * factor);
+        let factor = tint.map_or(Floats::Uniform(1.0), |t| t[component]);
+        if let (Weight::Uniform(w), Floats::Uniform(factor)) = (weight, factor) {
+            lobes.weights.resize(start + (component + 1) * n, w[component] * factor);
+            continue;
         }
+        for lane in 0..n {
+            lobes.weights.push(lobes.sweep.get(weight, component, lane, n) * tree.float(factor, lane));
+        }
+    }
+    let sum = lobes.weights[start..].iter().fold(0.0, |sum, w| sum + w.abs());
+    if made.gate == NONE && sum > 0.0 && sum < f32::INFINITY {
+        // The common case: every weight is a number and the surface exists in every lane.
+        lobes.lobes.push(Lobe { surface, layer });
+        return true;
     }
     let mut any = false;
     for lane in 0..n {
@@ -296,7 +307,9 @@ fn add_lobe(
             drop_lane(&mut lobes.dropped, name, lane);
         }
         if broken || absent {
-            at.map(|i| lobes.weights[i] = 0.0);
+            for i in at {
+                lobes.weights[i] = 0.0;
+            }
         }
         any |= !(broken || absent) && w != [0.0; 3];
     }
@@ -309,7 +322,14 @@ fn add_lobe(
 }
 
 /// Writes the albedo of every tree that lies on top of something as steps, children first.
-fn build_steps(sweep: &mut Sweep, layers: &mut Layers, surfaces: &mut Surfaces, table: &ClosureTable, tree: &Tree, root: NodeId) {
+fn build_steps(
+    sweep: &mut Sweep,
+    layers: &mut Layers,
+    surfaces: &mut Surfaces,
+    table: &ClosureTable,
+    tree: &Tree,
+    root: NodeId,
+) {
     if !sweep.in_top.iter().any(|&needed| needed) {
         return;
     }
@@ -393,23 +413,26 @@ fn pick(lobes: &mut Lobes) {
     for (index, lobe) in lobes.lobes.iter().enumerate() {
         let out = &mut lobes.picks[index * n..(index + 1) * n];
         surface_albedo(&lobes.surfaces, &lobes.surfaces.list[lobe.surface as usize], Side::View, out);
+        let through = if lobe.layer == NONE { &lobes.ones } else { lobes.layers.through_of(lobe.layer) };
         let weight = &lobes.weights[3 * n * index..3 * n * (index + 1)];
-        for lane in 0..n {
-            let through = if lobe.layer == NONE { 1.0 } else { lobes.layers.through_of(lobe.layer)[lane] };
-            let [x, y, z] = [weight[lane].abs(), weight[n + lane].abs(), weight[2 * n + lane].abs()];
+        let (x, rest) = weight.split_at(n);
+        let (y, z) = rest.split_at(n);
+        let (through, total) = (&through[..n], &mut total[..n]);
+        for i in 0..n {
+            let luminance = 0.2126 * x[i].abs() + 0.7152 * y[i].abs() + 0.0722 * z[i].abs();
             // An albedo is an estimate: a lobe that may scatter is never excluded for it.
-            let value = (0.2126 * x + 0.7152 * y + 0.0722 * z) * out[lane].max(1e-3) * through;
-            out[lane] = value.min(1e30);
-            total[lane] += out[lane];
+            out[i] = (luminance * out[i].max(1e-3) * through[i]).min(1e30);
+            total[i] += out[i];
         }
     }
+    for value in &mut total {
+        *value = if *value > 0.0 { 1.0 / *value } else { 0.0 };
+    }
     for index in 0..lobes.lobes.len() {
-        for lane in 0..n {
-            let pick = &mut lobes.picks[index * n + lane];
-            *pick = if total[lane] > 0.0 { *pick / total[lane] } else { 0.0 };
-            if *pick > 0.0 {
-                lobes.last[lane] = index as u32;
-            }
+        let picks = &mut lobes.picks[index * n..(index + 1) * n];
+        for ((pick, inverse), last) in picks.iter_mut().zip(&total).zip(&mut lobes.last) {
+            *pick *= inverse;
+            *last = if *pick > 0.0 { index as u32 } else { *last };
         }
     }
     lobes.side = total;

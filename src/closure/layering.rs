@@ -8,8 +8,8 @@
 use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes};
 use super::settings::Layering;
 use super::surfaces::{Kind, NONE, Surface, Surfaces, with_source};
-use crate::bsdf::fresnel::dielectric;
 use crate::bsdf::GAUSS;
+use crate::bsdf::fresnel::dielectric;
 
 /// Which direction an albedo is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -83,7 +83,11 @@ impl Arguments<'_> {
     }
 
     fn ints(&self, index: usize) -> Ints {
-        if let Some(Param::Int(value) | Param::String(value)) = self.params.get(index) { *value } else { Ints::Uniform(0) }
+        if let Some(Param::Int(value) | Param::String(value)) = self.params.get(index) {
+            *value
+        } else {
+            Ints::Uniform(0)
+        }
     }
 
     fn closure(&self, index: usize) -> Option<NodeId> {
@@ -104,7 +108,12 @@ impl Arguments<'_> {
 }
 
 /// The codes that occur in a batch, each with the gate of its lanes; code 0 means no surface.
-fn variants(surfaces: &mut Surfaces, columns: &[Option<Ints>], code: impl Fn(usize) -> u32, floats_vary: bool) -> Vec<(u32, u32)> {
+fn variants(
+    surfaces: &mut Surfaces,
+    columns: &[Option<Ints>],
+    code: impl Fn(usize) -> u32,
+    floats_vary: bool,
+) -> Vec<(u32, u32)> {
     let uniform = !floats_vary && columns.iter().all(|c| !matches!(c, Some(Ints::Varying(_))));
     let lanes = if uniform { surfaces.lanes.min(1) } else { surfaces.lanes };
     let mut seen = (0..lanes).fold(0u32, |seen, lane| seen | 1 << code(lane));
@@ -168,7 +177,8 @@ fn layer(surfaces: &mut Surfaces, context: &LeafContext, arguments: &Arguments) 
     let keyword = arguments.keyword("layering");
     let code = |lane| 1 + rule_code(rule_at(arguments, keyword, lane, context.settings));
     let covers = variants(surfaces, &[keyword], code, false).into_iter();
-    let cover = |(code, gate): (u32, u32)| Cover { surface: None, t: 0, rule: Layering::ALL[code as usize - 1].1, gate };
+    let cover =
+        |(code, gate): (u32, u32)| Cover { surface: None, t: 0, rule: Layering::ALL[code as usize - 1].1, gate };
     Leaf {
         covers: covers.map(cover).collect(),
         top: arguments.closure(0),
@@ -183,7 +193,8 @@ fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &Arguments, 
     let (shadowing, softening, layering) =
         (arguments.keyword("shadowing"), arguments.keyword("softening"), arguments.keyword("layering"));
     let code = |lane| {
-        let term = shadowing.map_or(settings.shadowing, |c| arguments.text(c, lane).parse().unwrap_or(settings.shadowing));
+        let term =
+            shadowing.map_or(settings.shadowing, |c| arguments.text(c, lane).parse().unwrap_or(settings.shadowing));
         let soft = softening.map_or(settings.softening, |c| tree.int(c, lane) != 0);
         let term = Shadowing::ALL.iter().position(|(_, t)| *t == term).unwrap_or(0) as u32;
         1 + rule_code(rule_at(arguments, layering, lane, settings)) + 3 * (term + 3 * u32::from(soft))
@@ -202,12 +213,20 @@ fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &Arguments, 
         let request = Request { kind, closure: arguments.spec.name, frame, params, count: 2, eta: None, gate };
         let surface = surfaces.push(tree, request);
         let made = surfaces.list[surface as usize];
-        // A sheen that is dropped for its parameters takes nothing from its base.
-        let exists: Vec<bool> = (0..surfaces.lanes).map(|lane| surfaces.gate(&made, lane) > 0.0).collect();
-        let t = surfaces.push_column(|lane| {
-            let largest = tint.iter().map(|&c| tree.float(c, lane)).fold(0.0, f32::max);
-            if exists[lane] && largest.is_finite() { largest } else { 0.0 }
-        });
+        let t = match tint {
+            [Floats::Uniform(x), Floats::Uniform(y), Floats::Uniform(z)] if made.gate == NONE => {
+                let largest = x.max(y).max(z).max(0.0);
+                surfaces.push_constant(if largest.is_finite() { largest } else { 0.0 })
+            }
+            _ => {
+                // A sheen that is dropped for its parameters takes nothing from its base.
+                let exists: Vec<bool> = (0..surfaces.lanes).map(|lane| surfaces.gate(&made, lane) > 0.0).collect();
+                surfaces.push_column(|lane| {
+                    let largest = tint.iter().map(|&c| tree.float(c, lane)).fold(0.0, f32::max);
+                    if exists[lane] && largest.is_finite() { largest } else { 0.0 }
+                })
+            }
+        };
         leaf.parts.push(Part { surface, t });
         leaf.covers.push(Cover { surface: Some(surface), t, rule: Layering::ALL[(code % 3) as usize].1, gate });
     }

@@ -159,6 +159,7 @@ impl Lobes {
             let frame = &self.surfaces.frames()[surface.frame as usize];
             let columns = LobeColumns {
                 wo: Triples::of(&frame.wo),
+                views: self.surfaces.views(surface),
                 wi: Triples::of(&frame.wi),
                 side: &self.side,
                 weight: Triples::packed(&self.weights[3 * n * index..], n),

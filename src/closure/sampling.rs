@@ -1,11 +1,12 @@
 //! Sampling: pick one lobe a lane, sample it, weigh the direction by the whole mixture.
 
-use super::batch::{Triples, pick_lanes, sample_lanes};
+use super::batch::{Triples, pick_lanes, sample_lanes, weigh_lanes};
 use super::lobes::{Evaluation, Lobes};
 use super::surfaces::{Kind, NONE, with_source};
 use crate::bsdf::specular::{Specular, reflection, refraction};
 use crate::math::columns::Column3;
 use crate::math::frame::Frame;
+use glam::Vec3;
 
 /// What happened in a lane.
 pub mod event {
@@ -50,11 +51,10 @@ impl Lobes {
     /// Samples one direction a lane from three numbers in [0, 1) a lane.
     pub fn sample(&mut self, xi: &Column3, out: &mut Samples) {
         let n = self.lanes;
-        for column in [&mut out.wi, &mut out.weight] {
-            column.resize(n);
-            for c in [&mut column.x, &mut column.y, &mut column.z] {
-                c.fill(0.0);
-            }
+        out.weight.resize(n);
+        out.wi.resize(n);
+        for column in [&mut out.wi.x, &mut out.wi.y, &mut out.wi.z] {
+            column.fill(0.0);
         }
         out.pdf.clear();
         out.pdf.resize(n, 0.0);
@@ -64,8 +64,10 @@ impl Lobes {
         self.draw(&mut out.wi);
         let mut evaluation = std::mem::take(&mut self.scratch.evaluation);
         self.evaluate(&out.wi, &mut evaluation);
+        let (x, y, z) = (&mut out.weight.x, &mut out.weight.y, &mut out.weight.z);
+        weigh_lanes(Triples::of(&evaluation.f_cos), &evaluation.pdf, x, y, z, &mut out.pdf);
         for lane in 0..n {
-            self.weigh(lane, &evaluation, out);
+            self.settle(lane, out);
         }
         self.scratch.evaluation = evaluation;
     }
@@ -117,7 +119,8 @@ impl Lobes {
                     let frame = &self.surfaces.frames()[surface.frame as usize];
                     let (local, eta) = (frame.wo.get(lane), self.surfaces.param(surface, 0, lane));
                     let mirror = surface.kind == Kind::Reflection;
-                    let Specular { wi: to, part } = if mirror { reflection(local, eta) } else { refraction(local, eta) };
+                    let Specular { wi: to, part } =
+                        if mirror { reflection(local, eta) } else { refraction(local, eta) };
                     let axes = Frame {
                         tangent: frame.tangent.get(lane),
                         bitangent: frame.bitangent.get(lane),
@@ -129,40 +132,39 @@ impl Lobes {
                 continue;
             }
             let frame = &self.surfaces.frames()[surface.frame as usize];
-            let wo = Triples::of(&frame.wo);
+            let viewer = (Triples::of(&frame.wo), self.surfaces.views(surface));
             let (axes, xi, mine) = (frame.axes(), Triples::of(xi), (chosen.as_slice(), index as u32));
             let (x, y, z) = (&mut wi.x, &mut wi.y, &mut wi.z);
-            with_source!(self.surfaces, surface, |M, source| sample_lanes::<M, _>(source, wo, axes, xi, mine, x, y, z));
+            with_source!(self.surfaces, surface, |M, source| sample_lanes::<M, _>(
+                source, viewer, axes, xi, mine, x, y, z
+            ));
         }
     }
 
-    /// Fills the weight, density and event of a lane whose direction is drawn and evaluated.
-    fn weigh(&self, lane: usize, evaluation: &Evaluation, out: &mut Samples) {
+    /// Names the event of a lane, and weighs lobes of one direction, which the evaluation knows nothing of.
+    fn settle(&self, lane: usize, out: &mut Samples) {
         let chosen = self.scratch.chosen[lane];
         if chosen == NONE {
             return;
         }
         let (n, lobe) = (self.lanes, self.lobes[chosen as usize]);
         let kind = self.surfaces.list[lobe.surface as usize].kind;
-        let (weight, pdf) = if kind.is_delta() {
-            let side = self.side[lane];
+        if kind.is_delta() {
             let visible = match kind {
-                Kind::Reflection => side > 0.0,
-                Kind::Refraction => side < 0.0,
+                Kind::Reflection => self.side[lane] > 0.0,
+                Kind::Refraction => self.side[lane] < 0.0,
                 _ => true,
             };
             let pick = self.picks[chosen as usize * n + lane];
             let scale = self.layers.scale_of(lobe.layer, &self.ones)[lane];
             let part = if visible { self.scratch.parts[lane] * scale / pick } else { 0.0 };
             let at = 3 * n * chosen as usize + lane;
-            (glam::Vec3::new(self.weights[at], self.weights[at + n], self.weights[at + 2 * n]) * part, pick)
-        } else {
-            let pdf = evaluation.pdf[lane];
-            (evaluation.f_cos.get(lane) * (1.0 / pdf.max(f32::MIN_POSITIVE)), pdf)
-        };
-        if pdf > 0.0 && pdf.is_finite() && weight.is_finite() && weight != glam::Vec3::ZERO {
-            out.weight.set(lane, weight);
-            out.pdf[lane] = pdf;
+            let weight = Vec3::new(self.weights[at], self.weights[at + n], self.weights[at + 2 * n]) * part;
+            let good = weight.is_finite() && weight != Vec3::ZERO;
+            out.weight.set(lane, if good { weight } else { Vec3::ZERO });
+            out.pdf[lane] = if good { pick } else { 0.0 };
+        }
+        if out.pdf[lane] > 0.0 {
             out.event[lane] = match kind {
                 Kind::Reflection => event::DELTA_REFLECT,
                 Kind::Refraction => event::DELTA_REFRACT,

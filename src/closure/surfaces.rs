@@ -7,13 +7,58 @@
 //! Decision (2026-11-22): such normals are bent instead of flipped, because a flipped one points into the surface and
 //! turns black under the geometric test, and instead of rejected, which leaves black spots on bump maps.
 
-use super::batch::{Each, Same, Triples, localise_lanes};
+use super::batch::{
+    Each, NormalColumns, Same, Triples, Views, localise_lanes, normal_lanes, tangent_lanes, view_lanes,
+};
 use crate::bsdf::Scatter;
 use crate::bsdf::sheen::shadowing::Shadowing;
 use crate::closure::tree::{Floats, Tree};
 use crate::math::columns::Column3;
 use crate::math::frame::Frame;
 use glam::Vec3;
+
+/// Runs an expression with the type `$M` of a surface's model and a source `$source` of its constants.
+/// Lobes of one direction have no lane loop and run nothing.
+macro_rules! with_source {
+    ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
+        use $crate::bsdf::sheen::shadowing::Shadowing;
+        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
+        use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar};
+        use $crate::closure::surfaces::Kind;
+        macro_rules! run {
+            ($model:ty) => {{
+                #[allow(unused)]
+                type $M = $model;
+                match $surface.params {
+                    $crate::closure::surfaces::Params::Uniform(params) => {
+                        let $source = $crate::closure::surfaces::same::<$M>(params);
+                        $body
+                    }
+                    $crate::closure::surfaces::Params::Columns(offsets) => {
+                        let $source = $crate::closure::surfaces::each(&$surfaces.data, offsets, $surfaces.lanes);
+                        $body
+                    }
+                }
+            }};
+        }
+        match $surface.kind {
+            Kind::Lambert => run!(lambert::Lambert),
+            Kind::Translucent => run!(lambert::Translucent),
+            Kind::OrenNayar => run!(oren_nayar::OrenNayar),
+            Kind::Sheen(Shadowing::Exact, true) => run!(Sheen<EXACT, true>),
+            Kind::Sheen(Shadowing::Exact, false) => run!(Sheen<EXACT, false>),
+            Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
+            Kind::Sheen(Shadowing::Published, false) => run!(Sheen<PUBLISHED, false>),
+            Kind::Sheen(Shadowing::Ashikhmin, _) => run!(Sheen<ASHIKHMIN, false>),
+            Kind::Microfacet { beckmann: false, refract: false } => run!(Microfacet<false, false>),
+            Kind::Microfacet { beckmann: false, refract: true } => run!(Microfacet<false, true>),
+            Kind::Microfacet { beckmann: true, refract: false } => run!(Microfacet<true, false>),
+            Kind::Microfacet { beckmann: true, refract: true } => run!(Microfacet<true, true>),
+            Kind::Reflection | Kind::Refraction | Kind::Transparent => {}
+        }
+    }};
+}
+pub(super) use with_source;
 
 /// No index.
 pub const NONE: u32 = u32::MAX;
@@ -71,6 +116,8 @@ pub struct Surface {
     pub frame: u32,
     /// Offset in [`Surfaces::data`] of a column that is 1 where the surface exists and 0 elsewhere; [`NONE`] for all 1.
     pub gate: u32,
+    /// Offset in [`Surfaces::views`] of what its model derives from the viewer.
+    pub view: u32,
     /// The name of its closure.
     pub closure: &'static str,
 }
@@ -108,12 +155,12 @@ pub struct FrameColumns {
     pub wo: Column3,
     /// The light in local coordinates, as of the last evaluation.
     pub wi: Column3,
-    /// Lanes whose viewer is inside.
-    pub inside: Vec<bool>,
+    /// 1 in lanes whose viewer is inside.
+    pub inside: Vec<f32>,
     /// True when any lane is inside.
     pub any_inside: bool,
-    /// Lanes whose normal is not a number.
-    pub broken: Vec<bool>,
+    /// 1 in lanes whose normal is not a number.
+    pub broken: Vec<f32>,
     /// True when any lane is broken.
     pub any_broken: bool,
 }
@@ -140,6 +187,8 @@ pub struct Surfaces {
     pub list: Vec<Surface>,
     /// Columns of parameters and gates.
     pub data: Vec<f32>,
+    views: Vec<f32>,
+    given: Column3,
     frames: Vec<FrameColumns>,
     frames_used: usize,
 }
@@ -153,6 +202,7 @@ impl Surfaces {
         self.lanes = lanes;
         self.list.clear();
         self.data.clear();
+        self.views.clear();
         self.frames_used = 0;
     }
 
@@ -171,6 +221,13 @@ impl Surfaces {
     /// A column of [`Surfaces::data`].
     pub fn column(&self, at: u32) -> &[f32] {
         &self.data[at as usize..at as usize + self.lanes]
+    }
+
+    /// A column of one number.
+    pub fn push_constant(&mut self, value: f32) -> u32 {
+        let at = self.data.len();
+        self.data.resize(at + self.lanes, value);
+        at as u32
     }
 
     /// Makes a column from a function of the lane and gives its offset.
@@ -202,10 +259,10 @@ impl Surfaces {
             None => (false, false),
         };
         let constant = params.map(|p| if let Floats::Uniform(v) = p { v } else { f32::NAN });
-        let mut surface = Surface { kind, params: Params::Uniform(constant), frame, gate, closure };
+        let mut surface = Surface { kind, params: Params::Uniform(constant), frame, gate, view: 0, closure };
         if inside || broken || constant[..count].iter().any(|v| !v.is_finite()) {
             let bad = |this: &Self, lane: usize| {
-                broken && this.frames[frame as usize].broken[lane]
+                broken && this.frames[frame as usize].broken[lane] > 0.0
                     || params[..count].iter().any(|&p| !tree.float(p, lane).is_finite())
             };
             if (0..self.lanes).any(|lane| bad(self, lane)) {
@@ -222,7 +279,8 @@ impl Surfaces {
                 for lane in 0..self.lanes {
                     let value = tree.float(params[k], lane);
                     let value = if value.is_finite() { value } else { 0.0 };
-                    let flip = eta == Some(k) && inside && self.frames[frame as usize].inside[lane] && value > 0.0;
+                    let flip =
+                        eta == Some(k) && inside && self.frames[frame as usize].inside[lane] > 0.0 && value > 0.0;
                     self.data.push(if flip { 1.0 / value } else { value });
                 }
             }
@@ -232,11 +290,41 @@ impl Surfaces {
             surface.params = Params::Columns(offsets);
         }
         self.list.push(surface);
+        self.look();
         self.list.len() as u32 - 1
     }
 
+    /// Computes what the newest surface derives from the viewer.
+    fn look(&mut self) {
+        let (n, at) = (self.lanes, self.views.len());
+        let Some(mut surface) = self.list.pop() else { return };
+        surface.view = at as u32;
+        if !surface.kind.is_delta() {
+            let mut views = std::mem::take(&mut self.views);
+            let wo = Triples::of(&self.frames[surface.frame as usize].wo);
+            with_source!(self, surface, |M, source| {
+                views.resize(at + n * M::VIEW, 0.0);
+                view_lanes::<M, _>(source, wo, &mut views[at..]);
+            });
+            self.views = views;
+        }
+        self.list.push(surface);
+    }
+
+    /// What a surface's model derives from the viewer.
+    pub fn views(&self, surface: &Surface) -> Views<'_> {
+        Views(&self.views[surface.view as usize..])
+    }
+
     /// The frame of a normal and tangent; one that was made for the same columns is used again.
-    pub fn frame(&mut self, tree: &Tree, normal: [Floats; 3], tangent: Option<[Floats; 3]>, wo: &Column3, ng: &Column3) -> u32 {
+    pub fn frame(
+        &mut self,
+        tree: &Tree,
+        normal: [Floats; 3],
+        tangent: Option<[Floats; 3]>,
+        wo: &Column3,
+        ng: &Column3,
+    ) -> u32 {
         let newest = self.frames_used.saturating_sub(FRAMES_COMPARED);
         let key = Some((normal, tangent));
         if let Some(found) = (newest..self.frames_used).find(|&i| self.frames[i].key == key) {
@@ -252,43 +340,39 @@ impl Surfaces {
         for column in [&mut frame.tangent, &mut frame.bitangent, &mut frame.normal, &mut frame.wo, &mut frame.wi] {
             column.resize(n);
         }
-        frame.inside.resize(n, false);
-        frame.broken.resize(n, false);
-        (frame.any_inside, frame.any_broken) = (false, false);
-        let triple = |t: [Floats; 3], lane| Vec3::from_array(t.map(|c| tree.float(c, lane)));
-        for lane in 0..n {
-            let given = triple(normal, lane);
-            let (n, inside) = facing(given, wo.get(lane), ng.get(lane));
-            let axes = match tangent {
-                Some(u) => Frame::from_normal_and_tangent(n, triple(u, lane)),
-                None => Frame::from_normal(n),
-            };
-            frame.tangent.set(lane, axes.tangent);
-            frame.bitangent.set(lane, axes.bitangent);
-            frame.normal.set(lane, axes.normal);
-            frame.wo.set(lane, axes.to_local(wo.get(lane)));
-            frame.inside[lane] = inside;
-            frame.any_inside |= inside;
-            frame.broken[lane] = !given.is_finite();
-            frame.any_broken |= frame.broken[lane];
+        frame.inside.resize(n, 0.0);
+        frame.broken.resize(n, 0.0);
+        for (k, column) in [&mut self.given.x, &mut self.given.y, &mut self.given.z].into_iter().enumerate() {
+            fill(column, tree, normal[k], n);
         }
+        let from = NormalColumns { given: Triples::of(&self.given), wo: Triples::of(wo), ng: Triples::of(ng) };
+        let normals = &mut frame.normal;
+        normal_lanes(from, &mut normals.x, &mut normals.y, &mut normals.z, &mut frame.inside, &mut frame.broken);
+        frame.any_inside = frame.inside.iter().sum::<f32>() > 0.0;
+        frame.any_broken = frame.broken.iter().sum::<f32>() > 0.0;
+        let (t, b) = (&mut frame.tangent, &mut frame.bitangent);
+        tangent_lanes(Triples::of(&frame.normal), &mut t.x, &mut t.y, &mut t.z, &mut b.x, &mut b.y, &mut b.z);
+        if let Some(u) = tangent {
+            for lane in 0..n {
+                let u = Vec3::from_array(u.map(|c| tree.float(c, lane)));
+                let axes = Frame::from_normal_and_tangent(frame.normal.get(lane), u);
+                frame.tangent.set(lane, axes.tangent);
+                frame.bitangent.set(lane, axes.bitangent);
+            }
+        }
+        let axes = [Triples::of(&frame.tangent), Triples::of(&frame.bitangent), Triples::of(&frame.normal)];
+        localise_lanes(axes, Triples::of(wo), &mut frame.wo.x, &mut frame.wo.y, &mut frame.wo.z);
         index as u32
     }
 }
 
-/// The unit normal to shade with, and whether the viewer is on its inner side.
-fn facing(given: Vec3, wo: Vec3, ng: Vec3) -> (Vec3, bool) {
-    let fallback = if ng.length_squared() > 0.5 { ng } else { wo };
-    let scale = given.abs().max_element();
-    let usable = given.is_finite() && scale > 1e-18;
-    // Dividing by the largest component first keeps the square of tiny and huge normals in range.
-    let unit = if usable { (given / scale).normalize() } else { fallback };
-    let inside = unit.dot(ng) * wo.dot(ng) < 0.0;
-    let unit = if inside { -unit } else { unit };
-    let cos = unit.dot(wo);
-    // Below this the cosine of the viewer counts as negative.
-    const LEAST: f32 = 1e-6;
-    if cos < LEAST { ((unit + wo * (LEAST - cos)).normalize_or(wo), inside) } else { (unit, inside) }
+/// Writes a column of the tree as one number a lane.
+pub fn fill(out: &mut Vec<f32>, tree: &Tree, from: Floats, lanes: usize) {
+    out.clear();
+    match from {
+        Floats::Uniform(value) => out.resize(lanes, value),
+        Floats::Varying(at) => out.extend_from_slice(&tree.floats[at as usize..at as usize + lanes]),
+    }
 }
 
 /// A parameter source made for a model: what [`with_source`] hands to a lane loop.
@@ -300,46 +384,3 @@ pub fn same<M: Scatter>(params: [f32; 4]) -> Same<M> {
 pub fn each(data: &[f32], offsets: [u32; 4], lanes: usize) -> Each<'_> {
     Each(offsets.map(|at| &data[at as usize..at as usize + lanes]))
 }
-
-/// Runs an expression with the type `$M` of a surface's model and a source `$source` of its constants.
-/// Lobes of one direction have no lane loop and run nothing.
-macro_rules! with_source {
-    ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
-        use $crate::bsdf::sheen::shadowing::Shadowing;
-        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
-        use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar};
-        use $crate::closure::surfaces::Kind;
-        macro_rules! run {
-            ($model:ty) => {{
-                #[allow(unused)]
-                type $M = $model;
-                match $surface.params {
-                    $crate::closure::surfaces::Params::Uniform(params) => {
-                        let $source = $crate::closure::surfaces::same::<$M>(params);
-                        $body
-                    }
-                    $crate::closure::surfaces::Params::Columns(offsets) => {
-                        let $source = $crate::closure::surfaces::each(&$surfaces.data, offsets, $surfaces.lanes);
-                        $body
-                    }
-                }
-            }};
-        }
-        match $surface.kind {
-            Kind::Lambert => run!(lambert::Lambert),
-            Kind::Translucent => run!(lambert::Translucent),
-            Kind::OrenNayar => run!(oren_nayar::OrenNayar),
-            Kind::Sheen(Shadowing::Exact, true) => run!(Sheen<EXACT, true>),
-            Kind::Sheen(Shadowing::Exact, false) => run!(Sheen<EXACT, false>),
-            Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
-            Kind::Sheen(Shadowing::Published, false) => run!(Sheen<PUBLISHED, false>),
-            Kind::Sheen(Shadowing::Ashikhmin, _) => run!(Sheen<ASHIKHMIN, false>),
-            Kind::Microfacet { beckmann: false, refract: false } => run!(Microfacet<false, false>),
-            Kind::Microfacet { beckmann: false, refract: true } => run!(Microfacet<false, true>),
-            Kind::Microfacet { beckmann: true, refract: false } => run!(Microfacet<true, false>),
-            Kind::Microfacet { beckmann: true, refract: true } => run!(Microfacet<true, true>),
-            Kind::Reflection | Kind::Refraction | Kind::Transparent => {}
-        }
-    }};
-}
-pub(super) use with_source;

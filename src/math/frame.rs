@@ -46,11 +46,8 @@ impl Frame {
         let usable = length2 > 1e-10 && length2 < 4.0;
         let tangent = along * (1.0 / length2.max(1e-10).sqrt());
         let pick = |a: f32, b: f32| if usable { a } else { b };
-        let tangent = Vec3::new(
-            pick(tangent.x, any.tangent.x),
-            pick(tangent.y, any.tangent.y),
-            pick(tangent.z, any.tangent.z),
-        );
+        let tangent =
+            Vec3::new(pick(tangent.x, any.tangent.x), pick(tangent.y, any.tangent.y), pick(tangent.z, any.tangent.z));
         Frame { tangent, bitangent: n.cross(tangent), normal: n }
     }
 

@@ -10,7 +10,7 @@
 pub mod distributions;
 
 use super::fresnel::{dielectric, refracted};
-use super::{Eval, Scatter, select};
+use super::{Eval, Scatter, View, select};
 use distributions::{Widths, beckmann_d, beckmann_lambda, ggx_d, ggx_lambda};
 use glam::Vec3;
 
@@ -44,42 +44,42 @@ impl<const BECKMANN: bool, const REFRACT: bool> Microfacet<BECKMANN, REFRACT> {
         if BECKMANN { beckmann_lambda(w, self.widths) } else { ggx_lambda(w, self.widths) }
     }
 
-    /// Density of visible normals of GGX times (wo . m): what both distributions sample, before the change of variables.
+    /// Density of visible normals of GGX over (wo . m), from G1 over the viewer's cosine: what both distributions sample.
     #[inline(always)]
-    fn visible(&self, wo: Vec3, m: Vec3) -> f32 {
-        let g1 = 1.0 / (1.0 + ggx_lambda(wo, self.widths));
-        g1 * ggx_d(m, self.widths) / wo.z.max(1e-30)
+    fn visible(&self, over_cos: f32, m: Vec3) -> f32 {
+        ggx_d(m, self.widths) * over_cos
     }
 
     #[inline(always)]
-    fn reflect(&self, wo: Vec3, wi: Vec3) -> Eval {
+    fn reflect(&self, wo: Vec3, view: View, wi: Vec3) -> Eval {
         let h = wo + wi;
         let m = h * (1.0 / h.dot(h).max(1e-30).sqrt());
-        let g2 = 1.0 / (1.0 + self.lambda(wo) + self.lambda(wi));
-        let f_cos = dielectric(wo.dot(m), self.eta) * self.d(m) * g2 * 0.25 / wo.z.max(1e-30);
+        let g2 = 1.0 / (1.0 + view[0] + self.lambda(wi));
+        let f_cos = dielectric(wo.dot(m), self.eta) * self.d(m) * g2 * 0.25 * view[2];
         let lit = wi.z > 0.0 && wo.z > 0.0;
-        Eval { f_cos: select(lit, f_cos, 0.0), pdf: select(lit, 0.25 * self.visible(wo, m), 0.0) }
+        Eval { f_cos: select(lit, f_cos, 0.0), pdf: select(lit, 0.25 * self.visible(view[1], m), 0.0) }
     }
 
     #[inline(always)]
-    fn refract(&self, wo: Vec3, wi: Vec3) -> Eval {
+    fn refract(&self, wo: Vec3, view: View, wi: Vec3) -> Eval {
         let h = wi * self.eta + wo;
         let length2 = h.dot(h).max(1e-30);
         let m = h * (1f32.copysign(h.z) / length2.sqrt());
         let (om, im) = (wo.dot(m), wi.dot(m));
         // The change from facets to light directions: eta² |wi . m| / (wo . m + eta wi . m)².
         let jacobian = self.eta * self.eta * im.abs() / length2;
-        let g2 = 1.0 / (1.0 + self.lambda(wo) + self.lambda(wi));
+        let g2 = 1.0 / (1.0 + view[0] + self.lambda(wi));
         let through = 1.0 - dielectric(om, self.eta);
-        let f_cos = through * self.d(m) * g2 * om * jacobian / wo.z.max(1e-30);
+        let f_cos = through * self.d(m) * g2 * om * jacobian * view[2];
         let lit = wi.z < 0.0 && wo.z > 0.0 && om > 0.0 && im < 0.0 && self.eta > 0.0;
-        Eval { f_cos: select(lit, f_cos, 0.0), pdf: select(lit, self.visible(wo, m) * om * jacobian, 0.0) }
+        Eval { f_cos: select(lit, f_cos, 0.0), pdf: select(lit, self.visible(view[1], m) * om * jacobian, 0.0) }
     }
 }
 
 impl<const BECKMANN: bool, const REFRACT: bool> Scatter for Microfacet<BECKMANN, REFRACT> {
     const PARAMS: usize = 3;
     const TRANSMITS: bool = REFRACT;
+    const VIEW: usize = 3;
 
     #[inline(always)]
     fn prepare([x, y, eta, _]: [f32; 4]) -> Self {
@@ -87,12 +87,18 @@ impl<const BECKMANN: bool, const REFRACT: bool> Scatter for Microfacet<BECKMANN,
     }
 
     #[inline(always)]
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
-        if REFRACT { self.refract(wo, wi) } else { self.reflect(wo, wi) }
+    fn view(&self, wo: Vec3) -> View {
+        let over_cos = 1.0 / wo.z.max(1e-30);
+        [self.lambda(wo), over_cos / (1.0 + ggx_lambda(wo, self.widths)), over_cos, 0.0, 0.0]
     }
 
     #[inline(always)]
-    fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3 {
+    fn eval_from(&self, wo: Vec3, view: View, wi: Vec3) -> Eval {
+        if REFRACT { self.refract(wo, view, wi) } else { self.reflect(wo, view, wi) }
+    }
+
+    #[inline(always)]
+    fn sample_from(&self, wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
         let m = distributions::sample_visible(wo, self.widths, xi.x, xi.y);
         if REFRACT { refracted(wo, m, self.eta) } else { m * (2.0 * wo.dot(m)) - wo }
     }

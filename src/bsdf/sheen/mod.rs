@@ -15,10 +15,10 @@ pub mod reference;
 pub mod sampling;
 pub mod shadowing;
 
-use super::{Eval, Scatter, select};
+use super::{Eval, Scatter, View, select};
 use albedo::AlbedoCurve;
 use glam::Vec3;
-use sampling::Proposal;
+use sampling::{Azimuth, Proposal};
 use shadowing::{Exact, Published, Shadowing, soften};
 
 /// Index of [`Shadowing::Exact`] as a constant parameter.
@@ -54,21 +54,33 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
     /// f without the cosine, 1/sr. Zero below the horizon and at a grazing light.
     #[inline(always)]
     pub fn f(&self, wo: Vec3, wi: Vec3) -> f32 {
-        select(wi.z > 0.0, self.f_cos(wo, wi) / wi.z.max(f32::MIN_POSITIVE), 0.0)
+        select(wi.z > 0.0, self.f_cos(wo, self.masking(wo), wi) / wi.z.max(f32::MIN_POSITIVE), 0.0)
+    }
+
+    /// The viewer's part of the shadowing term, in the form that [`Sheen::f_cos`] takes.
+    #[inline(always)]
+    fn masking(&self, wo: Vec3) -> f32 {
+        let co = wo.z.clamp(0.0, 1.0);
+        match (SHADOWING, SOFT) {
+            (EXACT, true) => 2.0 * (co + self.exact.f(co)),
+            (EXACT, false) => 2.0 * self.exact.f(co),
+            (PUBLISHED, _) => 4.0 * co * (1.0 + self.published.lambda(co)),
+            _ => 4.0,
+        }
     }
 
     /// f times the cosine of the light, 1/sr.
     #[inline(always)]
-    pub fn f_cos(&self, wo: Vec3, wi: Vec3) -> f32 {
+    fn f_cos(&self, wo: Vec3, masking: f32, wi: Vec3) -> f32 {
         let (co, ci) = (wo.z.clamp(0.0, 1.0), wi.z.clamp(0.0, 1.0));
         let d = charlie::distribution(charlie::sin2_half(wo, wi), self.n);
         // D over this denominator is f cos_i; each form stays finite as a cosine goes to zero.
         let denominator = match (SHADOWING, SOFT) {
-            (EXACT, true) => 2.0 * (co + self.exact.f(co)) + 4.0 * co * soften(self.exact.lambda(ci), ci),
-            (EXACT, false) => 2.0 * (self.exact.f(ci) * co / ci.max(f32::MIN_POSITIVE) + self.exact.f(co)),
-            (PUBLISHED, true) => 4.0 * co * (1.0 + soften(self.published.lambda(ci), ci) + self.published.lambda(co)),
-            (PUBLISHED, false) => 4.0 * co * (1.0 + self.published.lambda(ci) + self.published.lambda(co)),
-            _ => 4.0 * (1.0 + co * (1.0 - ci) / ci.max(f32::MIN_POSITIVE)),
+            (EXACT, true) => masking + 4.0 * co * soften(self.exact.lambda(ci), ci),
+            (EXACT, false) => masking + 2.0 * self.exact.f(ci) * co / ci.max(f32::MIN_POSITIVE),
+            (PUBLISHED, true) => masking + 4.0 * co * soften(self.published.lambda(ci), ci),
+            (PUBLISHED, false) => masking + 4.0 * co * self.published.lambda(ci),
+            _ => masking * (1.0 + co * (1.0 - ci) / ci.max(f32::MIN_POSITIVE)),
         };
         let value = d / denominator.max(1e-30);
         select(co > 0.0 && ci > 0.0, value, 0.0)
@@ -85,6 +97,7 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
 impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
     const PARAMS: usize = 2;
     const TRANSMITS: bool = false;
+    const VIEW: usize = 5;
 
     #[inline(always)]
     fn prepare([roughness, uniform_share, ..]: [f32; 4]) -> Self {
@@ -100,13 +113,19 @@ impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
     }
 
     #[inline(always)]
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
-        Eval { f_cos: self.f_cos(wo, wi), pdf: self.proposal.pdf(wo, wi) }
+    fn view(&self, wo: Vec3) -> View {
+        let Azimuth { a, b, cos, sin } = self.proposal.view(wo);
+        [self.masking(wo), a, b, cos, sin]
     }
 
     #[inline(always)]
-    fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3 {
-        self.proposal.sample(wo, xi)
+    fn eval_from(&self, wo: Vec3, [masking, a, b, cos, sin]: View, wi: Vec3) -> Eval {
+        Eval { f_cos: self.f_cos(wo, masking, wi), pdf: self.proposal.pdf(Azimuth { a, b, cos, sin }, wi) }
+    }
+
+    #[inline(always)]
+    fn sample_from(&self, _wo: Vec3, [_, a, b, cos, sin]: View, xi: Vec3) -> Vec3 {
+        self.proposal.sample(Azimuth { a, b, cos, sin }, xi)
     }
 
     #[inline(always)]

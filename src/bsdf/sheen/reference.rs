@@ -20,8 +20,24 @@ pub enum Model {
 ///
 /// Source: own derivation from the projected-area normalisation of D. Domain: c 0..1, n >= 1.
 /// Gives: relative error below 1e-9. The series converges for all u <= 1 because 1 + 1/2 + n/2 > 0.
+/// Beyond n = 12 its terms cancel, so Gauss's contiguous relation climbs from small n instead.
 pub fn exact_f(cos: f64, n: f64) -> f64 {
     let u = 1.0 - cos * cos;
+    if n <= 12.0 {
+        return series(u, n);
+    }
+    let half = 0.5 * n;
+    let mut m = half - half.floor() + 1.0;
+    let (mut before, mut here) = (series(u, 2.0 * m - 2.0), series(u, 2.0 * m));
+    while m < half - 0.5 {
+        (before, here) = (here, ((2.0 * m + 1.0 - (m - 0.5) * u) * here - m * (1.0 - u) * before) / (m + 1.0));
+        m += 1.0;
+    }
+    here
+}
+
+/// 2F1(-1/2, -n/2; 1; u).
+fn series(u: f64, n: f64) -> f64 {
     let (mut term, mut sum) = (1.0f64, 1.0f64);
     for k in 0..400_000 {
         let k = f64::from(k);

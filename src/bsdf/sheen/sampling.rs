@@ -9,7 +9,7 @@
 
 use super::fits::{ProposalFit, proposal_fit};
 use super::shadowing::Shadowing;
-use crate::math::elementary::exp;
+use crate::bsdf::power::exp;
 use crate::bsdf::select;
 use crate::math::warp::{cosine_hemisphere, uniform_hemisphere, uniform_hemisphere_pdf};
 use glam::Vec3;
@@ -50,12 +50,16 @@ pub struct Proposal {
 }
 
 /// What the view direction decides: the two parameters and the viewer's azimuth.
-#[derive(Clone, Copy)]
-struct View {
-    a: f32,
-    b: f32,
-    cos: f32,
-    sin: f32,
+#[derive(Clone, Copy, Debug)]
+pub struct Azimuth {
+    /// Width of the transformed cosine.
+    pub a: f32,
+    /// Its tilt toward the viewer.
+    pub b: f32,
+    /// Cosine of the viewer's azimuth.
+    pub cos: f32,
+    /// Sine of the viewer's azimuth.
+    pub sin: f32,
 }
 
 impl Proposal {
@@ -68,13 +72,14 @@ impl Proposal {
         Proposal { log_a: collapse(log_a), b: collapse(b), uniform_share }
     }
 
+    /// The parameters for a viewer.
     #[inline(always)]
-    fn view(&self, wo: Vec3) -> View {
+    pub fn view(&self, wo: Vec3) -> Azimuth {
         let sin2 = wo.x * wo.x + wo.y * wo.y;
         let sin_o = sin2.sqrt().min(1.0);
         let inverse = select(sin2 > 1e-20, 1.0 / sin2.max(1e-20).sqrt(), 0.0);
         let quadratic = |c: &[f32; 3]| c[0] + sin_o * (c[1] + sin_o * c[2]);
-        View {
+        Azimuth {
             a: exp(quadratic(&self.log_a)),
             b: sin_o * quadratic(&self.b),
             cos: select(sin2 > 1e-20, wo.x * inverse, 1.0),
@@ -84,8 +89,7 @@ impl Proposal {
 
     /// Density of a direction, 1/sr; zero below the horizon.
     #[inline(always)]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let view = self.view(wo);
+    pub fn pdf(&self, view: Azimuth, wi: Vec3) -> f32 {
         let (x, y) = (wi.x * view.cos + wi.y * view.sin, wi.y * view.cos - wi.x * view.sin);
         let (wx, wy) = (view.a * x + view.b * wi.z, view.a * y);
         let length2 = (wx * wx + wy * wy + wi.z * wi.z).max(1e-12);
@@ -96,8 +100,7 @@ impl Proposal {
 
     /// A direction; the third number chooses between the two parts.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3 {
-        let view = self.view(wo);
+    pub fn sample(&self, view: Azimuth, xi: Vec3) -> Vec3 {
         let w = cosine_hemisphere(xi.x, xi.y);
         let flat = uniform_hemisphere(xi.x, xi.y);
         let uniform = xi.z < self.uniform_share;

@@ -3,7 +3,7 @@
 //! The paper fits Lambda because the projected-area integral "has no easy solution". It has one: with n = 1/r,
 //! c (1 + 2 Lambda(c)) = f(c) = 2F1(-1/2, -n/2; 1; 1 - c²), hence G / (4 ci co) = 1 / (2 (f_i co + f_o ci)).
 
-use crate::math::elementary::{exp, ln};
+use crate::bsdf::power::{exp, power};
 use crate::bsdf::select;
 use std::fmt;
 use std::str::FromStr;
@@ -115,7 +115,7 @@ impl Published {
 
     #[inline(always)]
     fn l(&self, x: f32) -> f32 {
-        let power = select(x > 0.0, exp(self.c * ln(x.max(f32::MIN_POSITIVE))), 0.0);
+        let power = select(x > 0.0, power(x.max(f32::MIN_POSITIVE), self.c), 0.0);
         self.a / (1.0 + self.b * power) + self.d * x + self.e
     }
 
@@ -139,5 +139,5 @@ pub fn soften(lambda: f32, cos: f32) -> f32 {
     let x = 1.0 - cos;
     let x2 = x * x;
     let x4 = x2 * x2;
-    select(lambda > 1e-37, exp(((1.0 + 2.0 * x4 * x4) * ln(lambda.max(1e-37))).min(87.0)), 0.0)
+    select(lambda > 1e-37, power(lambda.max(1e-37), 1.0 + 2.0 * x4 * x4), 0.0)
 }

@@ -4,7 +4,6 @@ use velour::bsdf::sheen::albedo::{CURVE, MIN_FITTED_ROUGHNESS, SURFACE_COLUMNS, 
 use velour::bsdf::sheen::fits::{ALBEDO_ASHIKHMIN, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT};
 use velour::bsdf::sheen::reference::{self, Model};
 
-
 /// Interpolates the albedo, integrated numerically, at the Chebyshev nodes of both axes.
 fn fit(model: Model, soft: bool) -> Surface {
     let node = |k: usize, n: usize| (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).cos();
@@ -13,8 +12,7 @@ fn fit(model: Model, soft: bool) -> Surface {
         std::array::from_fn(|j| {
             let s = 0.5 * (1.0 + node(j, SURFACE_COLUMNS));
             let r = ((1.0 - s) * f64::from(MIN_FITTED_ROUGHNESS).ln()).exp();
-            // What reflects more than arrives is cut, as a scale below zero would be.
-            reference::albedo(model, soft, t * t * t, r, 24).min(1.2)
+            reference::albedo(model, soft, t * t * t, r, 24)
         })
     });
     let along = |k: usize, m: usize, n: usize| (std::f64::consts::PI * k as f64 * (m as f64 + 0.5) / n as f64).cos();

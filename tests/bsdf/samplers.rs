@@ -1,0 +1,158 @@
+//! Every sampler against its density by chi-square, at a level shared by all tests, with negative controls.
+
+use crate::{SEED, direction, narrow};
+use glam::Vec3;
+use velour::bsdf::lambert::{Lambert, Translucent};
+use velour::bsdf::microfacet::Microfacet;
+use velour::bsdf::oren_nayar::OrenNayar;
+use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
+use velour::bsdf::{Eval, Scatter};
+use velour::math::quadrature::gauss_legendre;
+use velour::measure::statistics::{Random, chi_square, sidak};
+
+const RINGS: usize = 24;
+const SECTORS: usize = 24;
+const SAMPLES: u32 = 100_000;
+/// Probability that a right build fails, over all tests of this file together.
+const LEVEL: f64 = 1e-4;
+const TESTS: u32 = 64;
+
+/// The cell of a direction: rings of equal cosine, sectors of equal azimuth.
+fn cell(w: Vec3) -> usize {
+    let ring = ((w.z * 0.5 + 0.5) * RINGS as f32) as usize;
+    let turn = (w.y.atan2(w.x) / std::f32::consts::TAU).rem_euclid(1.0);
+    ring.min(RINGS - 1) * SECTORS + ((turn * SECTORS as f32) as usize).min(SECTORS - 1)
+}
+
+/// How many samples each cell should get; the last one gets what the density leaves out.
+fn expectations(model: &impl Scatter, wo: Vec3) -> Vec<f64> {
+    let mut out = Vec::with_capacity(RINGS * SECTORS + 1);
+    for ring in 0..RINGS {
+        let edge = |k: usize| 2.0 * k as f64 / RINGS as f64 - 1.0;
+        // Refraction begins with a step where the micronormal reaches the horizon, so equal steps serve better than Gauss's.
+        let step = (edge(ring + 1) - edge(ring)) / 64.0;
+        let rings: Vec<f64> = (0..64).map(|k| edge(ring) + (f64::from(k) + 0.5) * step).collect();
+        for sector in 0..SECTORS {
+            let edge = |k: usize| std::f64::consts::TAU * k as f64 / SECTORS as f64;
+            let sectors = gauss_legendre(6, edge(sector), edge(sector + 1));
+            let mut sum = 0.0;
+            for z in &rings {
+                for phi in &sectors {
+                    sum += step * phi.weight * f64::from(model.eval(wo, narrow(direction(*z, phi.x))).pdf);
+                }
+            }
+            out.push(sum * f64::from(SAMPLES));
+        }
+    }
+    let total: f64 = out.iter().sum();
+    out.push((f64::from(SAMPLES) - total).max(0.0));
+    out
+}
+
+fn counts(model: &impl Scatter, wo: Vec3, seed: u64) -> Vec<f64> {
+    let mut random = Random(seed);
+    let mut out = vec![0.0; RINGS * SECTORS + 1];
+    for _ in 0..SAMPLES {
+        let wi = model.sample(wo, Vec3::new(random.next(), random.next(), random.next()));
+        let lost = wi == Vec3::ZERO || model.eval(wo, wi).pdf == 0.0;
+        out[if lost { RINGS * SECTORS } else { cell(wi) }] += 1.0;
+    }
+    out
+}
+
+fn passes<M: Scatter>(params: [f32; 4], name: &str) {
+    let model = M::prepare(params);
+    for (k, c) in [0.1, 0.5, 0.95].into_iter().enumerate() {
+        let wo = narrow(direction(c, 0.4 + k as f64));
+        let p = chi_square(&counts(&model, wo, SEED + k as u64), &expectations(&model, wo));
+        assert!(p > sidak(LEVEL, TESTS), "{name} {params:?} at {c}: p = {p:e}");
+    }
+}
+
+#[test]
+fn samples_follow_their_densities() {
+    passes::<Lambert>([0.0; 4], "lambert");
+    passes::<Translucent>([0.0; 4], "translucent");
+    passes::<OrenNayar>([0.5, 0.0, 0.0, 0.0], "oren_nayar");
+    for r in [0.06, 0.25, 1.0] {
+        passes::<Sheen<EXACT, true>>([r, 0.1, 0.0, 0.0], "sheen");
+        passes::<Sheen<EXACT, false>>([r, 0.1, 0.0, 0.0], "sheen exact");
+    }
+    passes::<Sheen<EXACT, true>>([0.25, 1.0, 0.0, 0.0], "sheen, uniform");
+    passes::<Sheen<PUBLISHED, true>>([0.25, 0.1, 0.0, 0.0], "sheen published");
+    passes::<Sheen<ASHIKHMIN, false>>([0.4, 0.1, 0.0, 0.0], "sheen ashikhmin");
+    for (x, y) in [(0.3, 0.3), (0.2, 0.6), (1.0, 1.0)] {
+        passes::<Microfacet<false, false>>([x, y, 1.5, 0.0], "ggx reflecting");
+        passes::<Microfacet<true, false>>([x, y, 1.5, 0.0], "beckmann reflecting");
+    }
+    for eta in [1.5, 1.0 / 1.5] {
+        passes::<Microfacet<false, true>>([0.4, 0.4, eta, 0.0], "ggx refracting");
+        passes::<Microfacet<true, true>>([0.3, 0.5, eta, 0.0], "beckmann refracting");
+    }
+}
+
+/// A model whose density is wrong by a factor on one half of the hemisphere, so that its sum stays 1.
+#[derive(Clone, Copy)]
+struct Wrong<M>(M);
+
+impl<M: Scatter> Scatter for Wrong<M> {
+    const PARAMS: usize = M::PARAMS;
+    const TRANSMITS: bool = M::TRANSMITS;
+
+    fn prepare(params: [f32; 4]) -> Self {
+        Wrong(M::prepare(params))
+    }
+
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
+        let eval = self.0.eval(wo, wi);
+        Eval { pdf: eval.pdf * if wi.x > 0.0 { 1.05 } else { 0.95 }, ..eval }
+    }
+
+    fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3 {
+        self.0.sample(wo, xi)
+    }
+
+    fn albedo(&self, cos: f32) -> f32 {
+        self.0.albedo(cos)
+    }
+}
+
+#[test]
+fn a_density_five_percent_wrong_is_rejected() {
+    fn rejected<M: Scatter>(params: [f32; 4]) {
+        let model = Wrong(M::prepare(params));
+        let wo = narrow(direction(0.5, 1.4));
+        let p = chi_square(&counts(&model, wo, SEED), &expectations(&model, wo));
+        assert!(p < sidak(LEVEL, TESTS), "p = {p:e}");
+    }
+    rejected::<Lambert>([0.0; 4]);
+    rejected::<Sheen<EXACT, true>>([0.25, 0.1, 0.0, 0.0]);
+    rejected::<Microfacet<false, false>>([0.3, 0.3, 1.5, 0.0]);
+    rejected::<Microfacet<false, true>>([0.4, 0.4, 1.5, 0.0]);
+}
+
+/// Relative variance of the one-sample estimate of the albedo, by quadrature.
+fn relative_variance(model: &impl Scatter, c: f64) -> f64 {
+    let wo = narrow(direction(c, 0.0));
+    let (mut square, mut mean) = (0.0, 0.0);
+    for (wi, weight) in velour::measure::furnace::hemisphere(48, 192, c) {
+        let Eval { f_cos, pdf } = model.eval(wo, wi);
+        square += weight * f64::from(f_cos) * f64::from(f_cos) / f64::from(pdf.max(1e-20));
+        mean += weight * f64::from(f_cos);
+    }
+    square / (mean * mean) - 1.0
+}
+
+#[test]
+fn the_default_sheen_sampler_beats_the_uniform_one() {
+    let cosines = [0.05, 0.25, 0.5, 0.75, 0.999];
+    for (r, bar) in [(0.06, 0.40), (0.15, 0.25), (0.25, 0.20), (0.4, 0.15), (0.65, 0.12), (1.0, 0.10)] {
+        let mean = |share: f32| {
+            let model = Sheen::<EXACT, true>::prepare([r, share, 0.0, 0.0]);
+            cosines.iter().map(|&c| relative_variance(&model, c)).sum::<f64>() / 5.0
+        };
+        let (proposal, uniform) = (mean(0.1), mean(1.0));
+        println!("r {r}: {proposal:.3} against {uniform:.3}");
+        assert!(proposal < bar && proposal < uniform, "r {r}: {proposal} {uniform}");
+    }
+}

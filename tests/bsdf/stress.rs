@@ -1,0 +1,159 @@
+//! A million directions, a third near the mirror, a third near grazing, against f64; and edge inputs.
+
+use crate::SEED;
+use glam::Vec3;
+use velour::bsdf::Scatter;
+use velour::bsdf::microfacet::Microfacet;
+use velour::bsdf::oren_nayar::OrenNayar;
+use velour::bsdf::sheen::reference::{self, Model};
+use velour::bsdf::sheen::shadowing::{Exact, Published, soften};
+use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
+use velour::measure::statistics::Random;
+
+fn direction(random: &mut Random, grazing: bool) -> Vec3 {
+    let z = if grazing { 10f32.powf(-6.0 * random.next()) } else { random.next().max(1e-3) };
+    let phi = random.next() * std::f32::consts::TAU;
+    let s = (1.0 - z * z).max(0.0).sqrt();
+    Vec3::new(s * phi.cos(), s * phi.sin(), z).normalize()
+}
+
+/// View, light and roughness of the k-th case.
+fn case(random: &mut Random, k: u32) -> (Vec3, Vec3, f32) {
+    let wo = direction(random, k % 3 == 1);
+    let wi = match k % 3 {
+        0 => {
+            let offset = 10f32.powf(-1.0 - 6.0 * random.next());
+            let jitter = Vec3::new(random.next() - 0.5, random.next() - 0.5, random.next() - 0.5) * offset;
+            (Vec3::new(-wo.x, -wo.y, wo.z) + jitter).normalize()
+        }
+        _ => direction(random, k % 3 == 1 && k % 2 == 0),
+    };
+    let r = match k % 17 {
+        0 => 0.0,
+        1 => 1e-39,
+        2 => 1.0,
+        _ => random.next(),
+    };
+    (wo, wi, r)
+}
+
+/// The largest absolute error of f (or of f cos) over the set, and that nothing is not finite.
+fn worst_error<const S: u8, const SOFT: bool>(model: Model, count: u32) -> (f64, f64) {
+    let mut random = Random(SEED);
+    let (mut worst_f, mut worst_f_cos) = (0.0f64, 0.0f64);
+    for k in 0..count {
+        let (wo, wi, r) = case(&mut random, k);
+        let sheen = Sheen::<S, SOFT>::prepare([r, 0.1, 0.0, 0.0]);
+        let (f, eval) = (sheen.f(wo, wi), sheen.eval(wo, wi));
+        assert!(f.is_finite() && f >= 0.0 && eval.f_cos.is_finite() && eval.pdf.is_finite(), "{wo} {wi} {r}");
+        assert!(sheen.albedo(wo.z).is_finite());
+        let wide = |v: Vec3| [f64::from(v.x), f64::from(v.y), f64::from(v.z)];
+        let expected = reference::f(model, SOFT, wide(wo), wide(wi), f64::from(charlie::clamp_roughness(r)));
+        worst_f_cos = worst_f_cos.max((f64::from(eval.f_cos) - expected * f64::from(wi.z.max(0.0))).abs());
+        if wo.z > 1e-5 && wi.z > 1e-5 {
+            // Unsoftened, f grows as 1 / cos and passes 1e4, where single floats cannot err by less than 1e-3.
+            let scale = if SOFT { 1.0 } else { expected.max(1.0) };
+            worst_f = worst_f.max((f64::from(f) - expected).abs() / scale);
+        }
+    }
+    (worst_f, worst_f_cos)
+}
+
+#[test]
+fn sheen_is_finite_and_right_everywhere() {
+    let cases = [
+        ("exact, softened", worst_error::<EXACT, true>(Model::ExactFit, 1_000_000)),
+        ("exact", worst_error::<EXACT, false>(Model::ExactFit, 200_000)),
+        ("published, softened", worst_error::<PUBLISHED, true>(Model::Published, 200_000)),
+        ("published", worst_error::<PUBLISHED, false>(Model::Published, 200_000)),
+        ("ashikhmin", worst_error::<ASHIKHMIN, false>(Model::Ashikhmin, 200_000)),
+    ];
+    for (name, (f, f_cos)) in cases {
+        println!("{name}: f {f:.2e}, f cos {f_cos:.2e}");
+        assert!(f < 5e-4 && f_cos < 5e-4, "{name}: {f:e} {f_cos:e}");
+    }
+}
+
+#[test]
+fn every_model_is_finite_everywhere() {
+    fn check<M: Scatter>(params: [f32; 4], random: &mut Random, k: u32) {
+        let (wo, mut wi, r) = case(random, k);
+        let model = M::prepare(params.map(|p| if p < 0.0 { r } else { p }));
+        if M::TRANSMITS {
+            wi = -wi;
+        }
+        let sampled = model.sample(wo, Vec3::new(random.next(), random.next(), random.next()));
+        assert!(sampled.is_finite(), "{params:?} {wo}");
+        for w in [wi, sampled, Vec3::ZERO, -wo, wo] {
+            let eval = model.eval(wo, w);
+            assert!(
+                eval.f_cos.is_finite() && eval.pdf.is_finite() && eval.f_cos >= 0.0 && eval.pdf >= 0.0,
+                "{params:?} {wo} {w} {eval:?}"
+            );
+        }
+    }
+    let mut random = Random(SEED + 1);
+    for k in 0..60_000 {
+        for eta in [0.0, 0.7, 1.0, 1.5] {
+            check::<Microfacet<false, false>>([-1.0, 0.3, eta, 0.0], &mut random, k);
+            check::<Microfacet<false, true>>([-1.0, -1.0, eta, 0.0], &mut random, k);
+            check::<Microfacet<true, false>>([-1.0, -1.0, eta, 0.0], &mut random, k);
+            check::<Microfacet<true, true>>([-1.0, 0.9, eta, 0.0], &mut random, k);
+        }
+        check::<OrenNayar>([-1.0, 0.0, 0.0, 0.0], &mut random, k);
+        check::<Sheen<EXACT, true>>([-1.0, 0.1, 0.0, 0.0], &mut random, k);
+        check::<Sheen<PUBLISHED, true>>([-1.0, 1.0, 0.0, 0.0], &mut random, k);
+    }
+}
+
+#[test]
+fn edge_inputs_give_what_they_should() {
+    // A mirror configuration whose half vector rounds to a cosine above 1.
+    let n = Vec3::new(-0.403_824_8, 0.816_492_5, 0.412_632_56);
+    let v = Vec3::new(-0.782_364_3, -0.409_227_67, 0.469_509_24);
+    let frame = velour::math::frame::Frame::from_normal(n);
+    let wo = frame.to_local(v);
+    let wi = Vec3::new(-wo.x, -wo.y, wo.z);
+    assert!(charlie::distribution(charlie::sin2_half(wo, wi), 1.0 / 0.15) < 1e-12);
+    // Close to the normal D keeps its digits.
+    let wo = Vec3::new(0.001, 0.0, 1.0).normalize();
+    let sine = charlie::sin2_half(wo, wo);
+    assert!((charlie::distribution(sine, 4.0) / 9.549_29e-13 - 1.0).abs() < 1e-4);
+    assert!(charlie::distribution(charlie::sin2_half(Vec3::X, -Vec3::X), 4.0) < 1e-30);
+    assert_eq!(charlie::clamp_roughness(2.0), 1.0);
+    assert_eq!(charlie::clamp_roughness(0.0), 0.01);
+    assert!((Published::new(0.25).lambda(1.000_000_1) - 1.0149e-8).abs() < 1e-11);
+    assert!(Exact::new(4.0).lambda(0.0).is_finite() && soften(Exact::new(4.0).lambda(0.0), 0.0).is_finite());
+    let below = Vec3::new(0.8, 0.0, -0.6);
+    assert_eq!(Sheen::<PUBLISHED, true>::prepare([0.25, 0.1, 0.0, 0.0]).f(Vec3::Z, below), 0.0);
+    let grazing = Sheen::<ASHIKHMIN, false>::prepare([0.25, 0.1, 0.0, 0.0]).eval(Vec3::X, Vec3::X);
+    assert_eq!(grazing.f_cos, 0.0);
+}
+
+#[test]
+fn unsoftened_models_are_reciprocal() {
+    let mut random = Random(SEED + 2);
+    for k in 0..20_000 {
+        let (wo, wi, r) = case(&mut random, k);
+        if wi.z <= 0.0 {
+            continue;
+        }
+        let sheen = Sheen::<EXACT, false>::prepare([r, 0.1, 0.0, 0.0]);
+        let rough = Microfacet::<false, false>::prepare([r.max(0.05), 0.2, 1.5, 0.0]);
+        let diffuse = OrenNayar::prepare([r, 0.0, 0.0, 0.0]);
+        let both =
+            |a: f32, b: f32| assert!((a - b).abs() <= 2e-3 * a.abs().max(b.abs()) + 1e-6, "{a} {b} {wo} {wi} {r}");
+        both(sheen.eval(wo, wi).f_cos * wo.z, sheen.eval(wi, wo).f_cos * wi.z);
+        both(rough.eval(wo, wi).f_cos * wo.z, rough.eval(wi, wo).f_cos * wi.z);
+        both(diffuse.eval(wo, wi).f_cos * wo.z, diffuse.eval(wi, wo).f_cos * wi.z);
+    }
+    let soft = Sheen::<PUBLISHED, true>::prepare([0.15, 0.1, 0.0, 0.0]);
+    let (a, b) = (
+        crate::narrow(crate::direction(30f64.to_radians().cos(), 0.0)),
+        crate::narrow(crate::direction(80f64.to_radians().cos(), 0.0)),
+    );
+    assert!(
+        (soft.f(a, b) - 0.03728).abs() < 1e-5 && (soft.f(b, a) - 0.07667).abs() < 1e-5,
+        "softening is not reciprocal"
+    );
+}
