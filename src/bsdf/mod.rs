@@ -16,6 +16,7 @@ pub mod oren_nayar;
 pub mod power;
 pub mod sheen;
 pub mod specular;
+pub mod velvet;
 
 use glam::Vec3;
 

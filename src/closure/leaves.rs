@@ -156,6 +156,7 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::Translucent => single(Kind::Translucent, none, 0, None),
         Model::Transparent => single(Kind::Transparent, none, 0, None),
         Model::OrenNayar => single(Kind::OrenNayar, one(arguments.float(1)), 1, None),
+        Model::Velvet => single(Kind::Velvet, one(arguments.float(1)), 1, None),
         Model::Reflection => single(Kind::Reflection, one(arguments.float(1)), 1, Some(0)),
         Model::Refraction => single(Kind::Refraction, one(arguments.float(1)), 1, Some(0)),
         Model::Microfacet => microfacet(surfaces, context, &arguments),

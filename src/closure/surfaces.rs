@@ -23,7 +23,7 @@ macro_rules! with_source {
     ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
         use $crate::bsdf::sheen::shadowing::Shadowing;
         use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
-        use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar};
+        use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar, velvet};
         use $crate::closure::surfaces::Kind;
         macro_rules! run {
             ($model:ty) => {{
@@ -45,6 +45,7 @@ macro_rules! with_source {
             Kind::Lambert => run!(lambert::Lambert),
             Kind::Translucent => run!(lambert::Translucent),
             Kind::OrenNayar => run!(oren_nayar::OrenNayar),
+            Kind::Velvet => run!(velvet::Velvet),
             Kind::Sheen(Shadowing::Exact, true) => run!(Sheen<EXACT, true>),
             Kind::Sheen(Shadowing::Exact, false) => run!(Sheen<EXACT, false>),
             Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
@@ -72,6 +73,8 @@ pub enum Kind {
     Translucent,
     /// Rough diffuse reflection.
     OrenNayar,
+    /// Ashikhmin's velvet.
+    Velvet,
     /// Sheen with its shadowing term, softened or not.
     Sheen(Shadowing, bool),
     /// Rough boundary.

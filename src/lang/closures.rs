@@ -44,6 +44,8 @@ pub enum Model {
     Diffuse,
     /// `oren_nayar(N, sigma)`
     OrenNayar,
+    /// `ashikhmin_velvet(N, sigma)`
+    Velvet,
     /// `translucent(N)`
     Translucent,
     /// `transparent()`
@@ -172,6 +174,13 @@ fn standard_specs() -> Vec<ClosureSpec> {
             &[NORMAL, param("sigma", Float, "standard deviation of the facet slope, radians, >= 0")],
             &[],
             "rough diffuse reflection of Oren and Nayar 1994",
+        ),
+        spec(
+            "ashikhmin_velvet",
+            Model::Velvet,
+            &[NORMAL, param("sigma", Float, "width of the inverted Gaussian, clamped to 0.06..1")],
+            &[],
+            "velvet of Ashikhmin and Premoze 2007, to compare sheen with",
         ),
         spec("translucent", Model::Translucent, &[NORMAL], &[], "Lambert's transmission"),
         spec("transparent", Model::Transparent, &[], &[], "lets light pass straight through"),

@@ -8,7 +8,7 @@
 //! fit and Ashikhmin's visibility need degree 12 x 8 for the kink of the one at cos = 0.5 and the gain of the other; their
 //! numbers are constants too, because tables built at the first use cost start-up time and a lock in the lane loop.
 
-use super::fits::{ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_SOFT, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT};
+use super::fits::{ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_SOFT, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET};
 use super::shadowing::Shadowing;
 use crate::math::elementary::ln;
 
@@ -50,6 +50,12 @@ impl AlbedoCurve {
             (Shadowing::Published, false) => Self::long(&ALBEDO_PUBLISHED, r),
             (Shadowing::Ashikhmin, _) => Self::long(&ALBEDO_ASHIKHMIN, r),
         }
+    }
+
+    /// The curve of Ashikhmin's velvet of one width; error 2.1e-4.
+    #[inline(always)]
+    pub fn velvet(m: f32) -> Self {
+        Self::long(&ALBEDO_VELVET, m)
     }
 
     #[inline(always)]
