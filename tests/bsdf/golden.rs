@@ -262,7 +262,7 @@ fn curve_error<const S: u8, const SOFT: bool>(model: Model, roughnesses: &[f64])
         for c in [1e-4, 4e-4, 2e-3, 7e-3, 0.03, 0.08, 0.17, 0.33, 0.47, 0.53, 0.68, 0.86, 0.97, 1.0] {
             let expected = reference::albedo(model, SOFT, c, r, 24).min(1.0);
             let error = f64::from(sheen.albedo(c as f32)) - expected;
-            assert!(error > -2e-3, "an albedo too small lets a base gain: {r} {c} {error}");
+            assert!(S != EXACT || error > -1e-3, "too small an albedo lets a base gain: {r} {c} {error}");
             worst = worst.max(error.abs());
         }
     }

@@ -1,10 +1,10 @@
 //! Directional albedo of the sheen (F = 1): a polynomial in the cube root of the cosine, collapsed for one roughness.
 //!
 //! The albedo rises like a power of the cosine below 1, so uniform axes in the cosine are the mistake to avoid: a 48 x 48
-//! table still errs by 0.03 to 0.1. In cbrt(cos) and log r a polynomial of degree 6 x 4 errs by at most 7.4e-4.
+//! table still errs by 0.03 to 0.1. In cbrt(cos) and log r a polynomial of degree 6 x 4 errs by at most 8.0e-4.
 //!
 //! Decision (2026-11-22): the exact terms use fitted polynomials of 35 numbers, which collapse to 7 once r is known, because
-//! a lane loop evaluates them without gathers (error 6.6e-4 and 7.4e-4), instead of 32 x 16 tables (7e-4). The published
+//! a lane loop evaluates them without gathers (error 6.8e-4 and 8.0e-4), instead of 32 x 16 tables (7e-4). The published
 //! fit and Ashikhmin's visibility need degree 12 x 8 for the kink of the one at cos = 0.5 and the gain of the other; their
 //! numbers are constants too, because tables built at the first use cost start-up time and a lock in the lane loop.
 
