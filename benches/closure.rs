@@ -26,7 +26,7 @@ fn directions(seed: u64) -> Column3 {
     let mut random = Random(seed);
     let mut out = Column3::zeros(LANES);
     for lane in 0..LANES {
-        let w = velour::math::warp::uniform_hemisphere(random.next(), random.next());
+        let w = velour::math::warp::uniform_hemisphere(random.number(), random.number());
         out.set(lane, w);
     }
     out
@@ -37,9 +37,9 @@ fn tree(table: &ClosureTable, case: &str) -> Tree {
     tree.clear(LANES);
     let mut random = Random(7);
     let normals: [Vec<f32>; 3] =
-        std::array::from_fn(|k| (0..LANES).map(|_| if k == 2 { 1.0 } else { 0.2 * (random.next() - 0.5) }).collect());
+        std::array::from_fn(|k| (0..LANES).map(|_| if k == 2 { 1.0 } else { 0.2 * (random.number() - 0.5) }).collect());
     let normal = Param::Triple(normals.each_ref().map(|column| tree.varying(column)));
-    let roughnesses: Vec<f32> = (0..LANES).map(|_| 0.1 + 0.8 * random.next()).collect();
+    let roughnesses: Vec<f32> = (0..LANES).map(|_| 0.1 + 0.8 * random.number()).collect();
     let id = |name| table.named(name).next().expect("a closure of this name").0;
     let float = |value| Param::Float(Floats::Uniform(value));
     let white = Param::Triple([Floats::Uniform(0.8); 3]);
@@ -96,7 +96,7 @@ fn sample(bencher: Bencher, case: &str) {
     let mut random = Random(3);
     let (mut xi, mut out) = (Column3::zeros(LANES), Samples::default());
     for lane in 0..LANES {
-        xi.set(lane, Vec3::new(random.next(), random.next(), random.next()));
+        xi.set(lane, Vec3::new(random.number(), random.number(), random.number()));
     }
     bencher.counter(ItemsCount::new(LANES)).bench_local(|| lobes.sample(black_box(&xi), &mut out));
 }
@@ -113,7 +113,7 @@ fn by_hand(
 ) {
     let n = out.len();
     let (alpha_o, pdf) = (&alpha_o[..n], &mut pdf[..n]);
-    let (wo, wi) = (wo.map(|c| &c[..n]), wi.map(|c| &c[..n]));
+    let (wo, wi) = ([&wo[0][..n], &wo[1][..n], &wo[2][..n]], [&wi[0][..n], &wi[1][..n], &wi[2][..n]]);
     for i in 0..n {
         let (o, l) = (Vec3::new(wo[0][i], wo[1][i], wo[2][i]), Vec3::new(wi[0][i], wi[1][i], wi[2][i]));
         let e = sheen.eval(o, l);

@@ -9,7 +9,7 @@ use std::f32::consts::{FRAC_1_PI, FRAC_2_PI};
 ///
 /// Source: Oren and Nayar 1994, eq. 30 with A = 1 - 0.5 s²/(s² + 0.33), B = 0.45 s²/(s² + 0.09).
 /// Domain: sigma >= 0, the standard deviation of the facet slope in radians.
-/// Gives: f in 1/sr, reciprocal; albedo in closed form (see [`OrenNayar::gain`]).
+/// Gives: f in 1/sr, reciprocal; albedo in closed form (see `gain`).
 /// Degenerate cases: sigma 0 is Lambert's; grazing directions are divided by the larger cosine, never by zero.
 /// Departs from source: the published formula reflects up to 1.5 % more light than arrives when a direction is grazing and
 /// sigma is below 0.42. There f is divided by the larger of the two albedos, which keeps it reciprocal and below 1.

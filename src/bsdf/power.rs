@@ -21,7 +21,7 @@ pub fn log2(x: f32) -> f32 {
     let p = p * f - 0.360_692_1;
     let p = p * f + 0.480_910_78;
     let p = p * f - 0.721_347_5;
-    let p = p * f + 1.442_695;
+    let p = p * f + std::f32::consts::LOG2_E;
     p * f + exponent as f32
 }
 

@@ -92,14 +92,35 @@ impl<'a> Views<'a> {
     /// Five columns, of which those beyond the model's are never read.
     #[inline(always)]
     fn narrow<M: Scatter>(self, lanes: usize) -> [&'a [f32]; 5] {
-        std::array::from_fn(|k| if k < M::VIEW { &self.0[k * lanes..][..lanes] } else { &self.0[..0] })
+        // Written out, because the array functions of the standard library are not inlined here, and the loop would
+        // lose the lengths and with them its SIMD form.
+        let used = M::VIEW;
+        [
+            cut(self.0, 0, used, lanes),
+            cut(self.0, 1, used, lanes),
+            cut(self.0, 2, used, lanes),
+            cut(self.0, 3, used, lanes),
+            cut(self.0, 4, used, lanes),
+        ]
     }
+}
+
+/// The column `k` of packed ones, empty when it is not used.
+#[inline(always)]
+fn cut(data: &[f32], k: usize, used: usize, lanes: usize) -> &[f32] {
+    if k < used { &data[k * lanes..][..lanes] } else { &data[..0] }
 }
 
 /// One lane of the views.
 #[inline(always)]
 fn view_at<M: Scatter>(columns: &[&[f32]; 5], lane: usize) -> View {
-    std::array::from_fn(|k| if k < M::VIEW { columns[k][lane] } else { 0.0 })
+    [
+        if M::VIEW > 0 { columns[0][lane] } else { 0.0 },
+        if M::VIEW > 1 { columns[1][lane] } else { 0.0 },
+        if M::VIEW > 2 { columns[2][lane] } else { 0.0 },
+        if M::VIEW > 3 { columns[3][lane] } else { 0.0 },
+        if M::VIEW > 4 { columns[4][lane] } else { 0.0 },
+    ]
 }
 
 /// Computes what a model derives from the viewer, one column after the other.

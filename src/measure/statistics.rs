@@ -17,7 +17,7 @@ impl Random {
     }
 
     /// The next number in [0, 1).
-    pub fn next(&mut self) -> f32 {
+    pub fn number(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1u64 << 24) as f32
     }
 }

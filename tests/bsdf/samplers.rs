@@ -6,7 +6,7 @@ use velour::bsdf::lambert::{Lambert, Translucent};
 use velour::bsdf::microfacet::Microfacet;
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
-use velour::bsdf::{Eval, Scatter};
+use velour::bsdf::{Eval, Scatter, View};
 use velour::math::quadrature::gauss_legendre;
 use velour::measure::statistics::{Random, chi_square, sidak};
 
@@ -53,7 +53,7 @@ fn counts(model: &impl Scatter, wo: Vec3, seed: u64) -> Vec<f64> {
     let mut random = Random(seed);
     let mut out = vec![0.0; RINGS * SECTORS + 1];
     for _ in 0..SAMPLES {
-        let wi = model.sample(wo, Vec3::new(random.next(), random.next(), random.next()));
+        let wi = model.sample(wo, Vec3::new(random.number(), random.number(), random.number()));
         let lost = wi == Vec3::ZERO || model.eval(wo, wi).pdf == 0.0;
         out[if lost { RINGS * SECTORS } else { cell(wi) }] += 1.0;
     }
@@ -103,12 +103,12 @@ impl<M: Scatter> Scatter for Wrong<M> {
         Wrong(M::prepare(params))
     }
 
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
+    fn eval_from(&self, wo: Vec3, _view: View, wi: Vec3) -> Eval {
         let eval = self.0.eval(wo, wi);
         Eval { pdf: eval.pdf * if wi.x > 0.0 { 1.05 } else { 0.95 }, ..eval }
     }
 
-    fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3 {
+    fn sample_from(&self, wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
         self.0.sample(wo, xi)
     }
 

@@ -11,8 +11,8 @@ use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
 use velour::measure::statistics::Random;
 
 fn direction(random: &mut Random, grazing: bool) -> Vec3 {
-    let z = if grazing { 10f32.powf(-6.0 * random.next()) } else { random.next().max(1e-3) };
-    let phi = random.next() * std::f32::consts::TAU;
+    let z = if grazing { 10f32.powf(-6.0 * random.number()) } else { random.number().max(1e-3) };
+    let phi = random.number() * std::f32::consts::TAU;
     let s = (1.0 - z * z).max(0.0).sqrt();
     Vec3::new(s * phi.cos(), s * phi.sin(), z).normalize()
 }
@@ -22,8 +22,8 @@ fn case(random: &mut Random, k: u32) -> (Vec3, Vec3, f32) {
     let wo = direction(random, k % 3 == 1);
     let wi = match k % 3 {
         0 => {
-            let offset = 10f32.powf(-1.0 - 6.0 * random.next());
-            let jitter = Vec3::new(random.next() - 0.5, random.next() - 0.5, random.next() - 0.5) * offset;
+            let offset = 10f32.powf(-1.0 - 6.0 * random.number());
+            let jitter = Vec3::new(random.number() - 0.5, random.number() - 0.5, random.number() - 0.5) * offset;
             (Vec3::new(-wo.x, -wo.y, wo.z) + jitter).normalize()
         }
         _ => direction(random, k % 3 == 1 && k % 2 == 0),
@@ -32,7 +32,7 @@ fn case(random: &mut Random, k: u32) -> (Vec3, Vec3, f32) {
         0 => 0.0,
         1 => 1e-39,
         2 => 1.0,
-        _ => random.next(),
+        _ => random.number(),
     };
     (wo, wi, r)
 }
@@ -82,7 +82,7 @@ fn every_model_is_finite_everywhere() {
         if M::TRANSMITS {
             wi = -wi;
         }
-        let sampled = model.sample(wo, Vec3::new(random.next(), random.next(), random.next()));
+        let sampled = model.sample(wo, Vec3::new(random.number(), random.number(), random.number()));
         assert!(sampled.is_finite(), "{params:?} {wo}");
         for w in [wi, sampled, Vec3::ZERO, -wo, wo] {
             let eval = model.eval(wo, w);

@@ -174,7 +174,7 @@ fn delta_lobes_are_picked_by_their_part() {
     assert_eq!(evaluate(&mut lobes, 1, Vec3::Z).pdf, [0.0]);
     let (mut counts, mut out, mut random) = ([0; 6], Samples::default(), Random(SEED));
     for _ in 0..10_000 {
-        lobes.sample(&Column3::splat(Vec3::new(0.1, 0.2, random.next()), 1), &mut out);
+        lobes.sample(&Column3::splat(Vec3::new(0.1, 0.2, random.number()), 1), &mut out);
         counts[out.event[0] as usize] += 1;
         assert!((out.weight.x[0] - 1.0).abs() < 1e-5);
     }
@@ -261,7 +261,7 @@ fn lanes_know_nothing_of_each_other() {
         let mut random: Vec<Random> = lanes.clone().map(|k| Random(SEED + k as u64)).collect();
         let (mut wo, mut xi) = (Column3::zeros(n), Column3::zeros(n));
         for lane in 0..n {
-            let mut next = || random[lane].next();
+            let mut next = || random[lane].number();
             wo.set(lane, narrow(direction(f64::from(next()), 6.0 * f64::from(next()))));
             xi.set(lane, Vec3::new(next(), next(), next()));
         }

@@ -25,8 +25,8 @@ pub const MIN_ETA_DIFFERENCE: f32 = 1e-3;
 /// Source: Walter, Marschner, Li and Torrance 2007, eq. 20, 21, 38 with the height-correlated Smith term (Heitz 2014,
 /// eq. 99). Domain: widths clamped to 1e-3..1, any eta; eta <= 0 reflects all. Gives: f cos in 1/sr.
 /// Degenerate cases: light on the wrong side gives 0, total reflection refracts nothing.
-/// Albedo: Fresnel's part at the angle to the shading normal; light lost between facets is not subtracted (at most
-/// 0.6 of it at width 1 and grazing view), so a layer on top of which it lies may take too much from its base, never too little.
+/// Albedo: Fresnel's part at the angle to the shading normal; light lost between facets is not subtracted, so as
+/// the top of a layer a wide lobe takes too much from its base.
 #[derive(Clone, Copy, Debug)]
 pub struct Microfacet<const BECKMANN: bool, const REFRACT: bool> {
     widths: Widths,

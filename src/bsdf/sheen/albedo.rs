@@ -1,16 +1,16 @@
 //! Directional albedo of the sheen (F = 1): a polynomial in the cube root of the cosine, collapsed for one roughness.
 //!
 //! The albedo rises like a power of the cosine below 1, so uniform axes in the cosine are the mistake to avoid: a 48 x 48
-//! table still errs by 0.03 to 0.1. In cbrt(cos) and log r a polynomial of degree 6 x 4 errs by at most 7.4e-4.
+//! table still errs by 0.03 to 0.1. In cbrt(cos) and log r a polynomial of degree 6 x 4 errs by at most 8.0e-4.
 //!
 //! Decision (2026-11-22): the exact terms use fitted polynomials of 35 numbers, which collapse to 7 once r is known, because
-//! a lane loop evaluates them without gathers (error 6.6e-4 and 7.4e-4), instead of 32 x 16 tables (7e-4). The published
+//! a lane loop evaluates them without gathers (error 6.8e-4 and 8.0e-4), instead of 32 x 16 tables (7e-4). The published
 //! fit and Ashikhmin's visibility need degree 12 x 8 for the kink of the one at cos = 0.5 and the gain of the other; their
 //! numbers are constants too, because tables built at the first use cost start-up time and a lock in the lane loop.
 
 use super::fits::{ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_SOFT, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET};
 use super::shadowing::Shadowing;
-use crate::math::elementary::ln;
+use crate::bsdf::power::log2;
 
 /// Coefficients of a curve in the cube root of the cosine.
 pub const CURVE: usize = 13;
@@ -23,8 +23,8 @@ const MIN_COS: f32 = 1e-4;
 const MIN_T: f32 = 0.046_415_888;
 /// The smallest roughness of the fit.
 pub const MIN_FITTED_ROUGHNESS: f32 = 0.06;
-/// ln(0.06), exact to f32.
-const LN_MIN: f32 = -2.813_410_8;
+/// log2(0.06), exact to f32.
+const LOG2_MIN: f32 = -4.058_893_7;
 
 /// Coefficients of a curve for every roughness.
 pub type Surface = [[f32; SURFACE_COLUMNS]; CURVE];
@@ -32,8 +32,8 @@ pub type Surface = [[f32; SURFACE_COLUMNS]; CURVE];
 /// The albedo of one roughness as Chebyshev coefficients.
 ///
 /// Source: own fits. Domain: cosine 0..1, roughness 0.06..1, below it the albedo of 0.06. Gives: 0..1.
-/// Error against quadrature of the same term, for cosines from 1e-4: 6.6e-4 exact, 7.4e-4 exact and softened; 3e-3 for
-/// the two lazily fitted ones.
+/// Error against quadrature of the same term, for cosines from 1e-4 (measured): exact and softened 8.0e-4, exact 6.8e-4,
+/// published 1.6e-3 with and without softening, Ashikhmin's visibility 1.1e-5 (what gains energy is cut at 1).
 #[derive(Clone, Copy, Debug)]
 pub struct AlbedoCurve {
     c: [f32; CURVE],
@@ -71,7 +71,11 @@ impl AlbedoCurve {
     #[inline(always)]
     fn long(surface: &Surface, r: f32) -> Self {
         let s = roughness_axis(r);
-        AlbedoCurve { c: surface.map(|row| chebyshev::<SURFACE_COLUMNS>(&row, s)) }
+        let mut c = [0.0; CURVE];
+        for i in 0..CURVE {
+            c[i] = chebyshev::<SURFACE_COLUMNS>(&surface[i], s);
+        }
+        AlbedoCurve { c }
     }
 
     /// The albedo at a cosine, clamped to 0..1. `LONG` curves have all coefficients, the others 7.
@@ -98,7 +102,7 @@ fn cube_root(x: f32) -> f32 {
 
 #[inline(always)]
 fn roughness_axis(r: f32) -> f32 {
-    1.0 - 2.0 * ln(r.clamp(MIN_FITTED_ROUGHNESS, 1.0)) / LN_MIN
+    1.0 - log2(r.clamp(MIN_FITTED_ROUGHNESS, 1.0)) * (2.0 / LOG2_MIN)
 }
 
 /// The first N terms of a Chebyshev series by Clenshaw's recurrence.

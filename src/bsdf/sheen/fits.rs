@@ -1,7 +1,8 @@
 //! Fitted constants of the sheen: albedo polynomials and sampler parameters.
 //!
 //! All are fitted on r 0.06..1. Albedo: Chebyshev coefficients, degree 6 in the cube root of the cosine (rows) times
-//! degree 4 in log r (columns), error at held-out points 6.6e-4 (exact) and 7.4e-4 (exact, softened) for cosines from 1e-4.
+//! degree 4 in log r (columns), error at held-out points 6.8e-4 (exact) and 8.0e-4 (exact, softened) for cosines from 1e-4;
+//! the long ones, of degree 12 times 8, interpolate quadrature at Chebyshev nodes (`tests/bsdf/fits.rs` makes them anew).
 //! Sampler: polynomials of degree 2 in sin theta_o (slow index) and sqrt r (fast index).
 
 use super::albedo::Surface;

@@ -5,8 +5,9 @@
 //!
 //! Decision (2026-11-22): roughness is clamped to 0.01..1, because below it the exponent of D passes 50 and single
 //! floats lose D, instead of OSL's 0.06. `Differs from OSL:` its renderers clamp at 0.06. The albedo evaluators are
-//! fitted from 0.06; below it they give the albedo of 0.06, which is too large (by at most 0.23, at r = 0.01),
-//! so a base under such a sheen is too dark, never too bright.
+//! fitted from 0.06; below it they give the albedo of 0.06, which for the exact terms is too large (by up to
+//! 0.34 softened, 0.26 not, at r = 0.01): a base under such a sheen is too dark, never too bright. The published fit itself
+//! gains energy there, and its curve is too small by up to 0.2 at cosines below 0.03.
 
 pub mod albedo;
 pub mod charlie;
