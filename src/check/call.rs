@@ -11,7 +11,7 @@ use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
 use crate::lang::closures::{ClosureId, ClosureSpec, ParamKind};
 use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{self, Ident};
-use velour_grammar::{Diagnostic, Span};
+use velour_grammar::{Diagnostic, Severity, Span};
 
 /// Something a call may mean.
 #[derive(Clone)]
@@ -24,7 +24,15 @@ enum Candidate {
 impl Checker<'_> {
     pub(super) fn check_call(&mut self, name: &Ident, args: &[ast::Expr], expected: Option<&Type>, span: Span) -> Expr {
         if let Some(Symbol::Struct(structure)) = self.lookup(&name.name) {
+            let structure = structure.clone();
             let ty = Type { element: crate::lang::types::Element::Struct(structure.clone()), length: Length::Single };
+            if args.len() < structure.fields.len() {
+                let (given, wanted) = (args.len(), structure.fields.len());
+                let message = format!("`{}` is made of {wanted} parts, {given} are given", name.name);
+                let diagnostic = Diagnostic::error("E0510", span, message);
+                self.report(diagnostic.help("give all parts, or use an initialiser list `{ … }`, where missing parts are zero"));
+                return Expr::error(span);
+            }
             let list = ast::Expr { kind: ast::ExprKind::InitList(args.to_vec()), span };
             return self.check_initial(&list, &mut ty.clone());
         }
@@ -37,14 +45,15 @@ impl Checker<'_> {
             return Expr::error(span);
         }
         let candidates = self.candidates(&name.name);
-        if candidates.is_empty() {
+        if candidates.is_empty() || matches!(self.lookup(&name.name), Some(Symbol::Var(_))) {
             self.unknown_function(name);
             return Expr::error(span);
         }
-        match self.best(&candidates, &values, expected, name) {
+        match self.best(&candidates, (args, &values), expected, name) {
             Some(Candidate::User(id)) => self.call_user(id, args, values, span),
             Some(Candidate::Builtin(name, signature)) => self.call_builtin(name, signature, args, values, span),
             Some(Candidate::Closure(id)) => self.call_closure(id, values, span),
+            None if self.diagnostics.list.last().is_some_and(|d| d.code == "E0413" && d.span == name.span) => Expr::error(span),
             None => {
                 self.no_match(name, &candidates, &values, span);
                 Expr::error(span)
@@ -52,15 +61,57 @@ impl Checker<'_> {
         }
     }
 
+    /// What a call of this name may mean. A function hides builtins and outer functions of the same parameters; inside
+    /// its own body it stands back for them, so that it can build on what it replaces.
     fn candidates(&self, name: &str) -> Vec<Candidate> {
-        let users = self.functions_named(name).into_iter().map(Candidate::User);
+        let mut users = self.functions_named(name);
+        let mut all = self.visible(name, &users);
+        if let Some(own) = self.inside.filter(|own| users.contains(own)) {
+            users.retain(|id| *id != own);
+            let others = self.visible(name, &users);
+            let hidden = self.formals_text(&Candidate::User(own));
+            if others.iter().any(|other| self.formals_text(other) == hidden) {
+                all = others;
+            }
+        }
+        all
+    }
+
+    fn visible(&self, name: &str, users: &[FunctionId]) -> Vec<Candidate> {
+        let alone = users.is_empty();
+        let users = users.iter().copied().map(Candidate::User);
         let builtin = builtins::static_name(name).unwrap_or_default();
         let builtins = builtins::signatures(name).unwrap_or_default().iter().map(|s| Candidate::Builtin(builtin, s));
         let closures = self.closures.named(name).map(|(id, _)| Candidate::Closure(id));
-        users.chain(builtins).chain(closures).collect()
+        let everything = users.chain(builtins).chain(closures);
+        if alone {
+            return everything.collect();
+        }
+        let mut all: Vec<Candidate> = Vec::new();
+        let mut seen: Vec<(String, Option<Type>)> = Vec::new();
+        for candidate in everything {
+            let user = matches!(candidate, Candidate::User(_));
+            let formals = self.formals_text(&candidate);
+            // Overloads on the return type stand side by side; a builtin gives way to any function of its parameters.
+            let returns = Some(self.returns_of(&candidate));
+            let hidden = seen.iter().any(|(f, r)| *f == formals && (!user || *r == returns));
+            if user {
+                seen.push((formals, returns));
+            }
+            if !hidden {
+                all.push(candidate);
+            }
+        }
+        all
     }
 
     fn unknown_function(&mut self, name: &Ident) {
+        if let Some(Symbol::Var(var)) = self.lookup(&name.name) {
+            let declared = self.variables[var.0 as usize].span;
+            let diagnostic = Diagnostic::error("E0405", name.span, format!("`{}` is a variable, not a function", name.name));
+            self.report(diagnostic.also(declared, "declared here").help("give the variable another name"));
+            return;
+        }
         let diagnostic = Diagnostic::error("E0405", name.span, format!("there is no function `{}`", name.name));
         let mut known: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().map(String::as_str)).collect();
         builtins::names().for_each(|name| known.push(name));
@@ -69,10 +120,17 @@ impl Checker<'_> {
         self.report(diagnostic.help(help.unwrap_or_else(|| "`velour info` lists functions and closures".to_owned())));
     }
 
-    fn best(&mut self, candidates: &[Candidate], args: &[Expr], expected: Option<&Type>, name: &Ident) -> Option<Candidate> {
+    /// The candidate that fits best, or nothing; an undecidable tie is reported.
+    fn best(
+        &mut self,
+        candidates: &[Candidate],
+        args: (&[ast::Expr], &[Expr]),
+        expected: Option<&Type>,
+        name: &Ident,
+    ) -> Option<Candidate> {
         let mut best: Vec<(u32, u32, &Candidate)> = Vec::new();
         for candidate in candidates {
-            let Some(score) = self.score(candidate, args) else { continue };
+            let Some(score) = self.score(candidate, args.0, args.1) else { continue };
             let result = expected.and_then(|ty| score_type(ty, &self.returns_of(candidate))).unwrap_or(0);
             let top = best.first().map_or((0, 0), |b| (b.0, b.1));
             if (score, result) > top || best.is_empty() {
@@ -82,16 +140,39 @@ impl Checker<'_> {
                 best.push((score, result, candidate));
             }
         }
-        let tied_users = best.iter().filter(|b| matches!(b.2, Candidate::User(_))).count();
         // The plainest return type wins a tie that the surroundings do not decide.
         let rank = |c: &Candidate| rank_type(&self.returns_of(c));
-        let chosen = best.iter().min_by_key(|b| rank(b.2)).map(|b| b.2.clone());
-        let same_formals = |c: &Candidate| chosen.as_ref().is_some_and(|d| self.formals_text(c) == self.formals_text(d));
-        if tied_users > 1 && best.iter().filter(|b| same_formals(b.2)).count() < best.len() {
-            let diagnostic = Diagnostic::warning("W0502", name.span, format!("the call of `{}` is ambiguous", name.name));
-            self.report(diagnostic.help("cast an argument, or the result, to the type that is meant"));
+        let chosen = best.iter().min_by_key(|b| rank(b.2)).map(|b| b.2.clone())?;
+        let lists = args.0.iter().any(|arg| matches!(arg.kind, ast::ExprKind::InitList(_)));
+        let tied = || best.iter().filter(|b| lists || matches!(b.2, Candidate::User(_)));
+        if tied().count() > 1 {
+            let undecided = best.iter().filter(|b| rank(b.2) == rank(&chosen)).count() > 1;
+            let fatal = undecided && (lists || self.returns_of(&chosen).structure().is_some()) || lists && expected.is_none();
+            let spans: Vec<Span> = tied().filter_map(|b| self.span_of(b.2)).collect();
+            self.ambiguous(name, &spans, fatal);
+            if fatal {
+                return None;
+            }
         }
-        chosen
+        Some(chosen)
+    }
+
+    fn span_of(&self, candidate: &Candidate) -> Option<Span> {
+        match candidate {
+            Candidate::User(id) => Some(self.signatures[id.0 as usize].span),
+            _ => None,
+        }
+    }
+
+    fn ambiguous(&mut self, name: &Ident, spans: &[Span], fatal: bool) {
+        let message = format!("the call of `{}` is ambiguous", name.name);
+        let diagnostic = if fatal {
+            Diagnostic::error("E0413", name.span, message)
+        } else {
+            Diagnostic::warning("W0502", name.span, message)
+        };
+        let diagnostic = spans.iter().fold(diagnostic, |d, &span| d.also(span, "this one fits"));
+        self.report(diagnostic.help("cast an argument, or the result, to the type that is meant"));
     }
 
     fn returns_of(&self, candidate: &Candidate) -> Type {
@@ -102,19 +183,57 @@ impl Checker<'_> {
         }
     }
 
-    fn score(&self, candidate: &Candidate, args: &[Expr]) -> Option<u32> {
-        match candidate {
+    fn score(&mut self, candidate: &Candidate, lists: &[ast::Expr], args: &[Expr]) -> Option<u32> {
+        let formals: Vec<Type> = match candidate {
             Candidate::User(id) => {
                 let formals = &self.signatures[id.0 as usize].formals;
                 if formals.len() != args.len() {
                     return None;
                 }
-                // An empty argument list fits exactly; one more keeps it above "no score".
-                formals.iter().zip(args).map(|((ty, _), arg)| score_argument(ty, arg)).try_fold(1, |sum, s| Some(sum + s?))
+                formals.iter().map(|(ty, _)| ty.clone()).collect()
             }
-            Candidate::Builtin(_, signature) => score_builtin(signature, args),
-            Candidate::Closure(id) => score_closure(self.closures.get(*id), args),
+            Candidate::Builtin(_, signature) => {
+                return score_builtin(signature, args).filter(|_| self.lists_fit_builtin(signature, lists));
+            }
+            Candidate::Closure(id) => return score_closure(self.closures.get(*id), args),
+        };
+        // An empty argument list fits exactly; one more keeps it above "no score".
+        let mut sum = 1;
+        for ((ty, arg), list) in formals.iter().zip(args).zip(lists) {
+            sum += score_argument(ty, arg)?;
+            if matches!(list.kind, ast::ExprKind::InitList(_)) && !self.list_fits(list, ty) {
+                return None;
+            }
         }
+        Some(sum)
+    }
+
+    fn lists_fit_builtin(&mut self, signature: &Signature, args: &[ast::Expr]) -> bool {
+        signature.formals.iter().zip(args).all(|((formal, _), arg)| match (formal, &arg.kind) {
+            (Formal::Type(ty), ast::ExprKind::InitList(_)) => self.list_fits(arg, ty),
+            (_, ast::ExprKind::InitList(_)) => false,
+            _ => true,
+        })
+    }
+
+    /// Tries an initialiser list for a type and takes back whatever was said about it. A list that leaves parts out fits
+    /// none of several candidates: it would fit too many.
+    fn list_fits(&mut self, list: &ast::Expr, ty: &Type) -> bool {
+        let ast::ExprKind::InitList(items) = &list.kind else { return false };
+        let wanted = match ty.structure() {
+            Some(structure) if !ty.is_array() => structure.fields.len(),
+            _ if ty.length == Length::Unsized => items.len(),
+            _ if ty.is_array() => ty.count(),
+            _ => ty.base().map_or(1, |base| base.components().max(1)),
+        };
+        if items.len() != wanted {
+            return false;
+        }
+        let said = self.diagnostics.list.len();
+        self.check_initial(list, &mut ty.clone());
+        let fits = self.diagnostics.list[said..].iter().all(|d| d.severity == Severity::Warning);
+        self.diagnostics.list.truncate(said);
+        fits
     }
 
     fn call_user(&mut self, id: FunctionId, args: &[ast::Expr], values: Vec<Expr>, span: Span) -> Expr {
@@ -151,6 +270,11 @@ impl Checker<'_> {
             self.report(diagnostic.help("compute the value in the shader, or pass it as a parameter"));
             return Expr::error(span);
         }
+        if let (true, Some(ExprKind::String(kind))) = (matches!(name, "noise" | "pnoise"), values.first().map(|v| &v.kind)) {
+            if !self.noise_exists(name, kind, values[0].span) {
+                return Expr::error(span);
+            }
+        }
         let mut arguments = Vec::new();
         for (at, (value, arg)) in values.into_iter().zip(args).enumerate() {
             match signature.formals.get(at) {
@@ -164,6 +288,20 @@ impl Checker<'_> {
         }
         self.check_format(name, &arguments, span);
         Expr::new(ExprKind::Builtin(name, arguments), signature.returns.clone(), span)
+    }
+
+    /// Reports a literal name that stands for no noise.
+    fn noise_exists(&mut self, function: &str, name: &str, span: Span) -> bool {
+        const NAMES: &[&str] = &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash"];
+        let unable = name == "gabor" || (function == "pnoise" && name.contains("simplex"));
+        if unable {
+            let diagnostic = Diagnostic::error("E0412", span, format!("velour does not run {function}(\"{name}\") yet"));
+            self.report(diagnostic.help("\"perlin\" is the nearest to it"));
+        } else if !NAMES.contains(&name) {
+            let diagnostic = Diagnostic::error("E0414", span, format!("there is no noise \"{name}\""));
+            self.report(diagnostic.help(format!("the kinds of noise are {}", NAMES.join(", "))));
+        }
+        !unable && NAMES.contains(&name)
     }
 
     fn call_closure(&mut self, id: ClosureId, values: Vec<Expr>, span: Span) -> Expr {

@@ -48,11 +48,8 @@ impl Checker<'_> {
             let diagnostic = Diagnostic::warning("W0501", span, "a float is cut to an int here");
             self.report(diagnostic.help("write `(int)` in front of it when that is meant"));
         } else if to.is_array() && to.element == expr.ty.element && expr.ty.is_array() {
-            if to.length == Length::Unsized || to.count() <= expr.ty.count() || expr.ty.length == Length::Unsized {
-                return expr;
-            }
-            self.error("E0501", span, format!("the array has {} elements, {} are needed", expr.ty.count(), to.count()));
-            return Expr::error(span);
+            // The shorter of the two sets how many elements are copied.
+            return expr;
         } else if !assignable(to, &expr.ty) {
             return self.mismatch(&expr, to);
         }
@@ -78,11 +75,6 @@ impl Checker<'_> {
             _ if expr.is_error() => expr,
             Some(Base::Void) | None => {
                 self.error("E0501", expr.span, format!("a {} is neither true nor false", expr.ty));
-                Expr::error(expr.span)
-            }
-            Some(Base::Closure) => {
-                let diagnostic = Diagnostic::error("E0412", expr.span, "velour does not test closures yet");
-                self.report(diagnostic.help("keep an int beside the closure"));
                 Expr::error(expr.span)
             }
             Some(_) => {

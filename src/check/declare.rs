@@ -54,6 +54,7 @@ impl Checker<'_> {
             let ty = self.resolve_type(&field.ty, field.array);
             if fields.iter().any(|(name, _)| *name == field.name.name) {
                 self.error("E0404", field.name.span, format!("the struct has two fields `{}`", field.name.name));
+                continue;
             }
             if ty.length == Length::Unsized {
                 self.error("E0507", field.name.span, "an array in a struct needs a length");
@@ -70,14 +71,10 @@ impl Checker<'_> {
     pub fn declare_function(&mut self, decl: &FunctionDecl) {
         let returns = self.resolve_type(&decl.return_type, ArrayLen::Single);
         let formals: Vec<_> = decl.params.iter().map(|p| (self.resolve_type(&p.ty, p.array), p.output)).collect();
-        let id = self.function_id(decl, &returns, &formals);
+        let mut id = self.function_id(decl, &returns, &formals);
         let Some(body) = &decl.body else { return };
         if self.bodies[id.0 as usize].is_some() {
-            let before = self.signatures[id.0 as usize].span;
-            let diagnostic =
-                Diagnostic::error("E0404", decl.span, format!("function `{}` is defined twice", decl.name.name));
-            self.report(diagnostic.also(before, "defined here first"));
-            return;
+            id = self.replaced(id, decl);
         }
         let (saved_returns, saved_inside) = (self.returns.replace(returns.clone()), self.inside.replace(id));
         let saved_loops = std::mem::take(&mut self.loops);
@@ -90,8 +87,37 @@ impl Checker<'_> {
         self.loops = saved_loops;
         self.returns = saved_returns;
         self.inside = saved_inside;
+        if returns != Type::VOID && !returns_somewhere(&body) {
+            let message = format!("`{}` returns a {returns}, but has no return statement", decl.name.name);
+            let diagnostic = Diagnostic::error("E0508", decl.name.span, message);
+            self.report(diagnostic.help("write `return value;`, or declare it `void`"));
+        }
         let function = typed::Function { name: decl.name.name.clone(), returns, params, body };
         self.bodies[id.0 as usize] = Some(Arc::new(function));
+    }
+
+    /// A function that takes the place of one defined before; calls between the two keep the old one.
+    fn replaced(&mut self, old: FunctionId, decl: &FunctionDecl) -> FunctionId {
+        let before = &self.signatures[old.0 as usize];
+        let diagnostic = Diagnostic::warning("W0504", decl.name.span, format!("function `{}` is defined twice", before.name));
+        let diagnostic = diagnostic.also(before.span, "defined here first");
+        let signature = Signature {
+            name: before.name.clone(),
+            returns: before.returns.clone(),
+            formals: before.formals.clone(),
+            span: decl.span,
+            calls: Vec::new(),
+        };
+        self.report(diagnostic.help("from here on the later one is called; remove one of them"));
+        let id = FunctionId(self.signatures.len() as u32);
+        self.signatures.push(signature);
+        self.bodies.push(None);
+        let scope = self.scopes.len() - 1;
+        if let Some(Symbol::Functions(ids)) = self.scopes[scope].get_mut(&decl.name.name) {
+            ids.retain(|known| *known != old);
+            ids.push(id);
+        }
+        id
     }
 
     /// The id of a prototype with the same formals in this scope, or a new one.
@@ -148,6 +174,7 @@ impl Checker<'_> {
     fn declare_param(&mut self, param: &Param) -> typed::ShaderParam {
         let mut ty = self.resolve_type(&param.ty, param.array);
         let name = &param.name;
+        let open = ty.length == Length::Unsized;
         if ty.length == Length::Unsized && param.output {
             self.error("E0507", name.span, "an output array needs a length");
         }
@@ -164,7 +191,7 @@ impl Checker<'_> {
         };
         let metadata = self.check_metadata(&param.metadata);
         let var = self.bind(&name.name, ty, name.span, param.output);
-        typed::ShaderParam { var, output: param.output, default, metadata }
+        typed::ShaderParam { var, output: param.output, open, default, metadata }
     }
 
     fn check_metadata(&mut self, list: &[Metadata]) -> Vec<typed::Metadata> {
@@ -176,4 +203,16 @@ impl Checker<'_> {
         }
         out
     }
+}
+
+/// Is there a return statement anywhere in these statements?
+fn returns_somewhere(stmts: &[typed::Stmt]) -> bool {
+    use typed::Stmt;
+    stmts.iter().any(|stmt| match stmt {
+        Stmt::Return(_) => true,
+        Stmt::Block(body) => returns_somewhere(body),
+        Stmt::If(_, then, otherwise) => returns_somewhere(then) || returns_somewhere(otherwise),
+        Stmt::Loop { body, .. } => returns_somewhere(body),
+        Stmt::Expr(_) | Stmt::Declare(..) | Stmt::Break | Stmt::Continue => false,
+    })
 }

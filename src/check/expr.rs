@@ -208,7 +208,8 @@ impl Checker<'_> {
         if let ExprKind::Int(value) = index.kind {
             if bound > 0 && (value < 0 || value as usize >= bound) {
                 let message = format!("index {value} is outside 0..{}", bound - 1);
-                self.error("E0512", index.span, message);
+                let diagnostic = Diagnostic::warning("W0503", index.span, message);
+                self.report(diagnostic.help("at run time the nearest element stands for it"));
             }
         }
         self.convert(index, &Type::INT)
@@ -219,7 +220,7 @@ impl Checker<'_> {
         if base.is_error() {
             return base;
         }
-        if let (Some(component), true) = (component(&field.name), base.ty.base().is_some_and(Base::is_triple)) {
+        if let Some(component) = component(&base.ty, &field.name) {
             let index = Expr::new(ExprKind::Int(component), Type::INT, field.span);
             return Expr::new(ExprKind::Index(Box::new(base), Box::new(index)), Type::FLOAT, span);
         }
@@ -237,7 +238,10 @@ impl Checker<'_> {
             return Some((at as u32, structure.fields[at].1.clone()));
         }
         let mut diagnostic = Diagnostic::error("E0505", field.span, format!("a {ty} has no field `{}`", field.name));
-        if let Some(structure) = structure {
+        if let Some(base) = ty.base().filter(|base| base.is_triple()) {
+            let names = if base == Base::Color { "r, g and b" } else { "x, y and z" };
+            diagnostic = diagnostic.help(format!("its components are {names}"));
+        } else if let Some(structure) = structure {
             let names: Vec<&str> = structure.fields.iter().map(|(name, _)| name.as_str()).collect();
             diagnostic = diagnostic.help(format!("its fields are {}", names.join(", ")));
         }
@@ -246,14 +250,14 @@ impl Checker<'_> {
     }
 }
 
-/// The component a name like `.x` or `.r` stands for.
-pub(super) fn component(name: &str) -> Option<i32> {
-    match name {
-        "x" | "r" => Some(0),
-        "y" | "g" => Some(1),
-        "z" | "b" => Some(2),
-        _ => None,
-    }
+/// The component a name stands for: `.r .g .b` of a color, `.x .y .z` of the other triples.
+pub(super) fn component(ty: &Type, name: &str) -> Option<i32> {
+    let names = match ty.base()? {
+        Base::Color => ["r", "g", "b"],
+        base if base.is_triple() => ["x", "y", "z"],
+        _ => return None,
+    };
+    names.iter().position(|n| *n == name).map(|at| at as i32)
 }
 
 /// The name closest to a mistyped one, when it is close enough to be meant.

@@ -26,7 +26,7 @@ impl Checker<'_> {
         let ty = match op {
             UnaryOp::Neg | UnaryOp::Plus if closure || is_numeric(&operand.ty) => operand.ty.clone(),
             UnaryOp::BitNot if operand.ty == Type::INT => Type::INT,
-            UnaryOp::Not if !closure && operand.ty.base().is_some_and(|b| b != Base::Void) => Type::INT,
+            UnaryOp::Not if operand.ty.base().is_some_and(|b| b != Base::Void) => Type::INT,
             _ => {
                 self.error("E0502", span, format!("`{}` does not take a {}", op.symbol(), operand.ty));
                 return Expr::error(span);

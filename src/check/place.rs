@@ -40,7 +40,7 @@ impl Checker<'_> {
             ast::ExprKind::Index(base, index) => self.place_index(base, index, expr),
             ast::ExprKind::Field(base, field) => {
                 let mut place = self.place(base)?;
-                if let (Some(at), true) = (component(&field.name), place.ty.base().is_some_and(Base::is_triple)) {
+                if let Some(at) = component(&place.ty, &field.name) {
                     let at = Expr::new(ExprKind::Int(at), Type::INT, field.span);
                     place.path.push(Access::Component(at));
                     place.ty = Type::FLOAT;

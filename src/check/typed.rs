@@ -43,6 +43,8 @@ pub struct ShaderParam {
     pub var: VarId,
     /// True when marked `output`.
     pub output: bool,
+    /// True when declared with `[]`, so that whoever gives the value sets the length.
+    pub open: bool,
     /// The default, of the parameter's type.
     pub default: Option<Expr>,
     /// Its metadata.

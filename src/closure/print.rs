@@ -48,7 +48,12 @@ pub fn closure_text(table: &ClosureTable, tree: &Tree, root: Option<NodeId>, lan
             Task::Sum(Some(node), weight) => match tree.nodes[node.0 as usize] {
                 Node::Add(a, b) => tasks.extend([Task::Sum(Some(b), weight), Task::Sum(Some(a), weight)]),
                 Node::Scale { weight: w, child } => {
-                    let product = std::array::from_fn(|c| weight[c] * tree.float(w[c], lane));
+                    let own = w.map(|w| tree.float(w, lane));
+                    let product = std::array::from_fn(|c| weight[c] * own[c]);
+                    // A closure times zero is no closure.
+                    if own == [0.0; 3] {
+                        continue;
+                    }
                     tasks.push(Task::Sum(Some(child), product));
                 }
                 Node::Select { mask, then, otherwise } => {

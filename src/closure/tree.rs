@@ -145,6 +145,27 @@ impl Tree {
         child.map(|child| self.push(Node::Scale { weight, child }))
     }
 
+    /// Is there a closure in this lane? As in OSL, one whose weight is zero is none.
+    pub fn present(&self, root: Option<NodeId>, lane: usize) -> bool {
+        let mut open = vec![root];
+        while let Some(node) = open.pop() {
+            match node.map(|id| self.nodes[id.0 as usize]) {
+                None => {}
+                Some(Node::Leaf { .. }) => return true,
+                Some(Node::Add(a, b)) => open.extend([Some(a), Some(b)]),
+                Some(Node::Scale { weight, child }) => {
+                    if weight.iter().any(|w| self.float(*w, lane) != 0.0) {
+                        open.push(Some(child));
+                    }
+                }
+                Some(Node::Select { mask, then, otherwise }) => {
+                    open.push(if self.int(mask, lane) != 0 { then } else { otherwise });
+                }
+            }
+        }
+        false
+    }
+
     /// Stores a column of floats, one a lane.
     pub fn varying(&mut self, column: &[f32]) -> Floats {
         let at = self.floats.len() as u32;

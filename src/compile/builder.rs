@@ -146,7 +146,12 @@ fn find_type(layer: &Layer, path: &str) -> Result<Type, GroupError> {
     let variables = &layer.shader.variables;
     let found = layer.shader.params.iter().map(|p| &variables[p.var.0 as usize]).find(|v| v.name == path[..end]);
     let no_such = || param_error(layer, path, format!("shader `{}` has no parameter `{path}`", layer.shader.name));
-    let mut ty = found.ok_or_else(no_such)?.ty.clone();
+    let found = found.ok_or_else(no_such)?;
+    let mut ty = found.ty.clone();
+    let open = layer.shader.params.iter().any(|p| p.open && variables[p.var.0 as usize].name == path);
+    if open {
+        ty.length = Length::Unsized;
+    }
     for step in path[end..].split_inclusive([']', '.']).flat_map(|s| s.split('.')).filter(|s| !s.is_empty()) {
         ty = match step.strip_prefix('[') {
             Some(_) if ty.is_array() => ty.element_type(),
@@ -184,7 +189,7 @@ fn checked_binding(layer: &Layer, name: &str, binding: &Binding) -> Result<(), G
 
 /// May an output of one type feed a parameter of another?
 fn connects(from: &Type, to: &Type) -> bool {
-    if from == to || (from.element == to.element && to.length == Length::Unsized) {
+    if from == to || (from.element == to.element && from.is_array() && to.length == Length::Unsized) {
         return true;
     }
     let numeric = |base: Base| base.is_number() || base.is_triple();

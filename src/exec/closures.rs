@@ -91,6 +91,13 @@ impl Run<'_> {
         self.regs.closures[dst.0 as usize] = value;
     }
 
+    pub(super) fn closure_absent(&mut self, dst: Reg, a: Reg) {
+        let root = self.closure(a);
+        for lane in 0..self.lanes_of(dst) {
+            self.regs.ints[dst.0 as usize][lane] = !self.tree.present(root, lane) as i32;
+        }
+    }
+
     pub(super) fn closure_select(&mut self, dst: Reg, c: Reg, a: Reg, b: Reg) {
         let (a, b) = (self.closure(a), self.closure(b));
         let column = self.regs.i(c);

@@ -371,6 +371,7 @@ impl Run<'_> {
             }
             Instr::ClosureScale(d, a, weight) => self.scale(*d, *a, weight),
             Instr::ClosureSelect(d, c, a, b) => self.closure_select(*d, *c, *a, *b),
+            Instr::ClosureAbsent(d, a) => self.closure_absent(*d, *a),
         }
     }
 

@@ -172,7 +172,10 @@ fn compute(routine: &Routine, a: &Lane, floats: &mut [f32; 16], ints: &mut [i32]
         }
         Routine::SplineInverse => {
             let knots: Vec<f32> = (2..a.src.len()).map(|i| a.f(i)).collect();
-            floats[0] = spline::splineinverse(Basis::from_name(a.s(0)), a.f(1), &knots);
+            let basis = Basis::from_name(a.s(0));
+            floats[0] = spline::splineinverse(basis, a.f(1), &knots);
+            let slope = spline::spline_slope(basis, floats[0], knots.len(), |i| knots[i]);
+            floats[1] = crate::ops::arithmetic::div(1.0, slope);
         }
         Routine::MatrixInverse => *floats = matrix::inverse(&a.matrix()),
         Routine::Determinant => floats[0] = matrix::determinant(&a.matrix()),

@@ -131,6 +131,36 @@ pub enum NoiseKind {
     Hash,
 }
 
+impl NoiseKind {
+    /// All kinds.
+    pub const ALL: &[NoiseKind] = {
+        use NoiseKind::*;
+        &[Perlin, UPerlin, Simplex, USimplex, Cell, Hash]
+    };
+
+    /// The names that `noise` and `pnoise` know it by.
+    pub fn names(self) -> &'static [&'static str] {
+        match self {
+            NoiseKind::Perlin => &["perlin", "snoise"],
+            NoiseKind::UPerlin => &["uperlin", "noise"],
+            NoiseKind::Simplex => &["simplex"],
+            NoiseKind::USimplex => &["usimplex"],
+            NoiseKind::Cell => &["cell"],
+            NoiseKind::Hash => &["hash"],
+        }
+    }
+
+    /// The kind of a name.
+    pub fn from_name(name: &str) -> Option<NoiseKind> {
+        NoiseKind::ALL.iter().copied().find(|kind| kind.names().contains(&name))
+    }
+
+    /// Is there a periodic form of it?
+    pub fn repeats(self) -> bool {
+        !matches!(self, NoiseKind::Simplex | NoiseKind::USimplex)
+    }
+}
+
 /// A noise function: its kind, its shape, and whether it repeats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Noise {
@@ -153,7 +183,7 @@ pub enum Routine {
     Noise(Noise),
     /// `spline`: basis symbol, x, then knots of one component; gives the value, and its slope in x.
     Spline,
-    /// `splineinverse`: basis symbol, value, knots.
+    /// `splineinverse`: basis symbol, value, knots; gives the place, and its slope in the value.
     SplineInverse,
     /// Inverse of a matrix: 16 to 16.
     MatrixInverse,

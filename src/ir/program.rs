@@ -175,6 +175,8 @@ pub enum Instr {
     ClosureScale(Reg, Reg, [Reg; 3]),
     /// `dst = c != 0 ? a : b`, closures
     ClosureSelect(Reg, Reg, Reg, Reg),
+    /// `dst = 1` in the lanes where `a` is no closure at all, an int
+    ClosureAbsent(Reg, Reg),
 }
 
 /// A piece of structured code.
@@ -270,7 +272,7 @@ impl Instr {
         use Instr::*;
         match self {
             Unary(_, _, a) | Test(_, _, a) | IntUnary(_, _, a) | IntToFloat(_, a) | FloatToInt(_, a) => visit(*a),
-            Derivative(_, a, _) | Move { src: a, .. } => visit(*a),
+            ClosureAbsent(_, a) | Derivative(_, a, _) | Move { src: a, .. } => visit(*a),
             Binary(_, _, a, b) | Compare(_, _, a, b) | IntBinary(_, _, a, b) | ClosureAdd(_, a, b) => {
                 visit(*a);
                 visit(*b);
@@ -303,7 +305,7 @@ impl Instr {
             ArrayGet { dst, .. } | Leaf { dst, .. } => visit(*dst),
             ArraySet { .. } => {}
             Call { dst, .. } => dst.iter().for_each(|r| visit(*r)),
-            ClosureScale(d, ..) => visit(*d),
+            ClosureScale(d, ..) | ClosureAbsent(d, _) => visit(*d),
         }
     }
 

@@ -121,6 +121,7 @@ impl Walk<'_> {
             Instr::Move { dst, src, .. } => self.kinds(&[*src], self.program.kind(*dst)),
             Instr::ClosureAdd(d, a, b) => self.kinds(&[*d, *a, *b], Kind::Closure),
             Instr::ClosureScale(d, a, w) => self.kinds(&[*d, *a], Kind::Closure).and(self.kinds(w, Kind::Float)),
+            Instr::ClosureAbsent(d, a) => self.kinds(&[*d], Kind::Int).and(self.kinds(&[*a], Kind::Closure)),
             Instr::ClosureSelect(d, c, a, b) => {
                 self.kinds(&[*c], Kind::Int).and(self.kinds(&[*d, *a, *b], Kind::Closure))
             }

@@ -75,7 +75,7 @@ impl Needs {
             Instr::Call { routine: Routine::Noise(noise), src, .. } if has_slope(noise.kind) => {
                 src[..noise.dims as usize].iter().for_each(|&reg| self.mark(reg));
             }
-            Instr::Call { routine: Routine::Spline, src, .. } => self.mark(src[1]),
+            Instr::Call { routine: Routine::Spline | Routine::SplineInverse, src, .. } => self.mark(src[1]),
             _ => {}
         }
     }
@@ -232,7 +232,7 @@ impl Writer<'_> {
             Instr::Call { routine: Routine::Noise(noise), dst, src, span } if has_slope(noise.kind) => {
                 self.noise_slope(noise, dst, src, span);
             }
-            Instr::Call { routine: Routine::Spline, ref dst, ref src, .. } => {
+            Instr::Call { routine: Routine::Spline | Routine::SplineInverse, ref dst, ref src, .. } => {
                 let (value, slope_of_x, x) = (dst[0], dst[1], src[1]);
                 self.emit(instr);
                 let slope = self.slope(x).map(|slope| self.mul(slope, slope_of_x));
@@ -362,10 +362,15 @@ impl Writer<'_> {
         }
         match op {
             Binary::Min | Binary::Max => {
-                let op = if op == Binary::Min { Compare::Lt } else { Compare::Gt };
-                let second = self.program.reg(Kind::Int, false);
-                self.emit(Instr::Compare(op, second, b, a));
-                self.choose(second, b, a)
+                // Of equal operands OSL takes the derivative of the first for min, of the second for max.
+                let test = self.program.reg(Kind::Int, false);
+                if op == Binary::Min {
+                    self.emit(Instr::Compare(Compare::Lt, test, b, a));
+                    self.choose(test, b, a)
+                } else {
+                    self.emit(Instr::Compare(Compare::Gt, test, a, b));
+                    self.choose(test, a, b)
+                }
             }
             // The derivative of the remainder is taken as that of the dividend, as OSL does.
             Binary::Mod => da,
@@ -420,8 +425,13 @@ impl Writer<'_> {
         let by_b = if db == [None, None] {
             one
         } else {
-            let log = self.un(Unary::Log, a);
-            self.bin(Binary::Mul, y, log)
+            // A base that is not positive has no logarithm; its derivative counts as zero.
+            let (log, zero) = (self.un(Unary::Log, a), self.zero());
+            let product = self.bin(Binary::Mul, y, log);
+            let (positive, safe) = (self.program.reg(Kind::Int, false), self.program.reg(Kind::Float, false));
+            self.emit(Instr::Compare(Compare::Gt, positive, a, zero));
+            self.emit(Instr::Select(safe, positive, product, zero));
+            safe
         };
         let mut out = [None; 2];
         for i in 0..2 {

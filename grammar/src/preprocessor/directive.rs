@@ -163,8 +163,15 @@ impl Preprocessor<'_> {
         ));
     }
 
-    /// `#pragma once`; all others are none of our business.
+    /// `#pragma once`, `#pragma error "…"`, `#pragma warning "…"`; all others are none of our business.
     fn pragma(&mut self, arguments: &[PpToken]) {
+        if let Some((word, rest)) = arguments.split_first() {
+            match &*self.text(*word) {
+                "error" => return self.stop_directive(*word, rest),
+                "warning" => return self.warning_directive(*word, rest),
+                _ => {}
+            }
+        }
         if arguments.first().is_some_and(|t| self.text(*t) == "once")
             && let Some(input) = self.inputs.last()
         {

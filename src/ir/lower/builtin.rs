@@ -2,7 +2,7 @@
 
 use super::Lower;
 use super::value::Value;
-use crate::check::typed::{Argument, Expr};
+use crate::check::typed::{Argument, Expr, ExprKind, VarId};
 use crate::ir::op::*;
 use crate::ir::program::*;
 use crate::lang::types::{Base, Type};
@@ -16,7 +16,7 @@ impl Lower<'_> {
                 return self.writing_call(name, args, call);
             }
             "arraylength" => {
-                let len = args[0].ty().count() as i32;
+                let len = self.length_of(&args[0]) as i32;
                 return Value::Regs(vec![self.b.int(len)]);
             }
             "isconnected" | "isconstant" => return self.known_about(name, &args[0]),
@@ -80,7 +80,7 @@ impl Lower<'_> {
             }
             "normalize" => self.normalize(a[0]),
             "luminance" => {
-                let weights = [0.2126, 0.7152, 0.0722].map(|w| self.b.float(w));
+                let weights = crate::ops::color::LUMINANCE_WEIGHTS.map(|w| self.b.float(w));
                 vec![self.dot(a[0], &weights)]
             }
             "transform" => self.transform_call(a, args),
@@ -207,20 +207,33 @@ impl Lower<'_> {
         self.cross(&dx, &dy)
     }
 
+    /// How many elements an array argument has; the type alone does not say it inside functions that take any length.
+    fn length_of(&mut self, arg: &Argument) -> usize {
+        let value = match arg {
+            Argument::In(expr) => self.expr(expr),
+            Argument::Out(place) => {
+                let target = self.target(place);
+                self.load(&target)
+            }
+        };
+        value.len()
+    }
+
     /// Is a parameter connected; is a value known before the shader runs?
     fn known_about(&mut self, name: &str, arg: &Argument) -> Value {
         let known = match arg {
-            Argument::In(expr) if name == "isconnected" => match &expr.kind {
-                crate::check::typed::ExprKind::Var(var) => self.connected.contains(var),
-                _ => false,
+            Argument::In(expr) if name == "isconnected" => match root_variable(expr) {
+                // 1 for a parameter that is fed, 2 for one that is read, 3 for both.
+                Some(var) => self.connected.contains(&var) as i32 + 2 * self.read.contains(&var) as i32,
+                None => 0,
             },
             Argument::In(expr) => {
                 let regs = self.expr_regs(expr);
-                !regs.is_empty() && regs.iter().all(|&reg| self.b.program.constant(reg).is_some())
+                (!regs.is_empty() && regs.iter().all(|&reg| self.b.program.constant(reg).is_some())) as i32
             }
-            Argument::Out(_) => false,
+            Argument::Out(_) => 0,
         };
-        Value::Regs(vec![self.b.int(known as i32)])
+        Value::Regs(vec![self.b.int(known)])
     }
 
     fn spline(&mut self, name: &str, args: &[Argument]) -> Value {
@@ -238,11 +251,8 @@ impl Lower<'_> {
         let mut out = Vec::new();
         for c in 0..components {
             let src: Vec<Reg> = [basis, x].into_iter().chain(knots.iter().map(|knot| knot[c])).collect();
-            let (routine, kinds): (_, &[Kind]) = match name {
-                "spline" => (Routine::Spline, &[Kind::Float, Kind::Float]),
-                _ => (Routine::SplineInverse, &[Kind::Float]),
-            };
-            out.push(self.b.call(routine, kinds, src, self.span)[0]);
+            let routine = if name == "spline" { Routine::Spline } else { Routine::SplineInverse };
+            out.push(self.b.call(routine, &[Kind::Float, Kind::Float], src, self.span)[0]);
         }
         Value::Regs(out)
     }
@@ -321,7 +331,7 @@ impl Lower<'_> {
 
     fn regex(&mut self, whole: bool, args: &[Argument], inputs: Vec<Reg>) -> Reg {
         let positions = args.iter().find(|arg| matches!(arg, Argument::Out(_)));
-        let count = positions.map_or(0, |arg| arg.ty().count());
+        let count = positions.map_or(0, |arg| self.length_of(arg));
         let results = self.b.call(Routine::Regex(whole), &vec![Kind::Int; 1 + count], inputs, self.span);
         if let Some(arg) = positions {
             self.write_flat(arg, &results[1..]);
@@ -330,7 +340,7 @@ impl Lower<'_> {
     }
 
     fn split(&mut self, args: &[Argument], mut inputs: Vec<Reg>) -> Reg {
-        let count = args[1].ty().count();
+        let count = self.length_of(&args[1]);
         if inputs.len() < 2 {
             let spaces = self.symbol("");
             inputs.push(spaces);
@@ -343,6 +353,18 @@ impl Lower<'_> {
         let results = self.b.call(Routine::Split, &kinds, inputs, self.span);
         self.write_flat(&args[1], &results[1..]);
         results[0]
+    }
+}
+
+/// The variable an expression is, or is a field of.
+fn root_variable(expr: &Expr) -> Option<VarId> {
+    let mut expr = expr;
+    loop {
+        match &expr.kind {
+            ExprKind::Var(var) => return Some(*var),
+            ExprKind::Field(base, _) => expr = base,
+            _ => return None,
+        }
     }
 }
 

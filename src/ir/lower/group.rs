@@ -3,11 +3,11 @@
 use super::assigned::Assigned;
 use super::value::{Value, kind_of, zero_of};
 use super::{Bound, Builder, Frame, Lower};
-use crate::check::typed::{Shader, VarId};
+use crate::check::typed::{Shader, ShaderParam, VarId};
 use crate::ir::program::*;
 use crate::lang::globals::Global;
 use crate::lang::symbols::Symbol;
-use crate::lang::types::{Base, Element, Type};
+use crate::lang::types::{Base, Element, Length, Type};
 use std::collections::HashMap;
 use std::sync::Arc;
 use velour_grammar::Span;
@@ -60,6 +60,7 @@ pub fn lower(layers: &[Layer], options: LowerOptions) -> Program {
             exit: None,
             assigned: Assigned::default(),
             connected: Vec::new(),
+            read: read_params(layers, number, options.outputs),
             layer: number as u32,
             span: Span::NONE,
         };
@@ -84,7 +85,7 @@ impl Lower<'_> {
         let ci_var = self.global_var(Global::Ci);
         self.vars[ci_var.0 as usize] = Some(Bound { value: Value::Regs(vec![ci]), level: 0 });
         for param in &self.shader.params {
-            self.parameter(param.var, param.default.as_ref(), layer, finished);
+            self.parameter(param, layer, finished);
         }
         let effects = self.assigned.of_stmts(self.shader, &self.shader.body);
         if !effects.returns && !effects.exits {
@@ -115,17 +116,20 @@ impl Lower<'_> {
 
     fn parameter(
         &mut self,
-        var: VarId,
-        default: Option<&crate::check::typed::Expr>,
+        param: &ShaderParam,
         layer: &Layer,
         finished: &[HashMap<String, (Value, Type)>],
     ) {
+        let var = param.var;
         let variable = &self.shader.variables[var.0 as usize];
-        let (name, ty) = (variable.name.clone(), variable.ty.clone());
+        let (name, mut ty) = (variable.name.clone(), variable.ty.clone());
         let whole = layer.bindings.iter().rev().find(|(target, _)| *target == name);
+        if let Some((_, binding)) = whole.filter(|_| param.open) {
+            ty.length = Length::Fixed(self.given_length(binding, &ty, finished).max(1));
+        }
         let value = match whole {
             Some((_, binding)) => self.bound_value(binding, &ty, finished),
-            None => match default {
+            None => match &param.default {
                 Some(default) => {
                     let value = self.expr(default);
                     self.owned(&value, &ty)
@@ -139,6 +143,19 @@ impl Lower<'_> {
         self.bind(var, value);
         for (target, binding) in layer.bindings.iter().filter(|(target, _)| *target != name && root(target) == name) {
             self.bind_part(var, &ty, &target[name.len()..], binding, finished);
+        }
+    }
+
+    /// How many elements a binding gives to a parameter that takes any number.
+    fn given_length(&mut self, binding: &Binding, ty: &Type, finished: &[HashMap<String, (Value, Type)>]) -> u32 {
+        let each = ty.element_type().base().map_or(1, Base::components).max(1);
+        match binding {
+            Binding::Numbers(numbers) => numbers.len().div_ceil(each) as u32,
+            Binding::Strings(strings) => strings.len() as u32,
+            Binding::Connection(layer, name) => {
+                let found = finished.get(*layer).and_then(|params| self.part_of(params, name));
+                found.map_or(1, |(value, _)| value.len() as u32)
+            }
         }
     }
 
@@ -288,7 +305,11 @@ impl Lower<'_> {
             let variable = &self.shader.variables[param.var.0 as usize];
             let value = self.variable(param.var);
             let value = self.stable(&value);
-            out.insert(variable.name.clone(), (value, variable.ty.clone()));
+            let mut ty = variable.ty.clone();
+            if param.open {
+                ty.length = Length::Fixed(value.len() as u32);
+            }
+            out.insert(variable.name.clone(), (value, ty));
         }
         out
     }
@@ -301,6 +322,19 @@ impl Lower<'_> {
             }
         }
     }
+}
+
+/// The parameters of a layer that somebody reads: later layers, or the host when outputs are kept.
+fn read_params(layers: &[Layer], number: usize, kept: bool) -> Vec<VarId> {
+    let shader = &layers[number].shader;
+    let named = |param: &ShaderParam| &shader.variables[param.var.0 as usize].name;
+    let reads = |name: &str| {
+        let mut bindings = layers[number + 1..].iter().flat_map(|layer| &layer.bindings);
+        bindings.any(|(_, b)| matches!(b, Binding::Connection(from, path) if *from == number && root(path) == name))
+    };
+    let last = number + 1 == layers.len();
+    let seen = |param: &&ShaderParam| reads(named(param)) || (kept && last && param.output);
+    shader.params.iter().filter(seen).map(|param| param.var).collect()
 }
 
 fn list_value(layer: &str, name: String, value: &Value, ty: &Type, outputs: &mut Vec<Output>) {

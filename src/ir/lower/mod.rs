@@ -54,6 +54,8 @@ struct Lower<'a> {
     assigned: Assigned,
     /// Which parameters of the layer are connected.
     connected: Vec<VarId>,
+    /// Which of its parameters are read by later layers, or by the host.
+    read: Vec<VarId>,
     /// Which layer of the group this is.
     layer: u32,
     span: Span,

@@ -2,32 +2,100 @@
 
 use super::Lower;
 use super::value::Value;
-use crate::check::typed::{Argument, Expr, ExprKind};
-use crate::ir::op::{Binary, Noise, NoiseKind, Routine};
-use crate::ir::program::{Kind, Reg};
+use crate::check::typed::{Argument, Expr};
+use crate::ir::op::{Binary, IntBinary, Noise, NoiseKind, PrintTo, Routine, TextArg, TextFormat, Unary};
+use crate::ir::program::{Kind, Node, Reg};
+use crate::lang::symbols::Symbol;
 use crate::lang::types::Base;
 
 impl Lower<'_> {
     /// A call of a noise function, or nothing when it is none.
     pub(super) fn noise_call(&mut self, name: &str, args: &[Argument], call: &Expr) -> Option<Value> {
         let periodic = matches!(name, "pnoise" | "psnoise");
-        let first_is_name = matches!(name, "noise" | "pnoise") && args[0].ty().base() == Some(Base::String);
+        let named = matches!(name, "noise" | "pnoise") && args[0].ty().base() == Some(Base::String);
         let kind = match name {
-            "noise" | "pnoise" if first_is_name => named_kind(&args[0])?,
             "noise" | "pnoise" => NoiseKind::UPerlin,
             "snoise" | "psnoise" => NoiseKind::Perlin,
             "cellnoise" => NoiseKind::Cell,
             "hashnoise" => NoiseKind::Hash,
             _ => return None,
         };
-        let coordinates: Vec<&Argument> = args[first_is_name as usize..].iter().collect();
-        let plain = coordinates.iter().take_while(|arg| arg.ty().base() != Some(Base::String)).count();
-        let src: Vec<Reg> = self.arguments(&args[first_is_name as usize..first_is_name as usize + plain]).concat();
-        let dims = src.len() / (1 + periodic as usize);
-        let outputs = call.ty.base().map_or(1, Base::floats);
-        let noise = Noise { kind, dims: dims as u8, outputs: outputs as u8, periodic, gradient: false };
+        let outputs = call.ty.base().map_or(1, Base::floats) as u8;
+        let noise = |dims: usize| Noise { kind, dims: dims as u8, outputs, periodic, gradient: false };
+        let coordinates = args.iter().skip(named as usize).take_while(|arg| arg.ty().base() != Some(Base::String)).count();
+        let values = self.arguments(&args[..named as usize + coordinates]);
+        let src: Vec<Reg> = values[named as usize..].concat();
+        let noise = noise(src.len() / (1 + periodic as usize));
         self.at(call.span);
-        Some(Value::Regs(self.b.call(Routine::Noise(noise), &vec![Kind::Float; outputs], src, self.span)))
+        if named {
+            let name = values[0][0];
+            return Some(Value::Regs(self.named_noise(name, noise, &src)));
+        }
+        Some(Value::Regs(self.noise(noise, &src)))
+    }
+
+    fn noise(&mut self, mut noise: Noise, src: &[Reg]) -> Vec<Reg> {
+        let dims = noise.dims as usize;
+        let mut src = src.to_vec();
+        if noise.periodic && matches!(noise.kind, NoiseKind::Cell | NoiseKind::Hash) {
+            // What looks at whole cells repeats when its coordinates do.
+            src = (0..dims).map(|i| self.wrapped(src[i], src[dims + i])).collect();
+            noise.periodic = false;
+        }
+        self.b.call(Routine::Noise(noise), &vec![Kind::Float; noise.outputs as usize], src, self.span)
+    }
+
+    /// A coordinate brought into `0..period`; periods are whole numbers from 1 on.
+    fn wrapped(&mut self, x: Reg, period: Reg) -> Reg {
+        let one = self.b.float(1.0);
+        let whole = self.b.unary(Unary::Floor, period);
+        let period = self.b.binary(Binary::Max, whole, one);
+        let quotient = self.b.binary(Binary::Div, x, period);
+        let rounds = self.b.unary(Unary::Floor, quotient);
+        let offset = self.b.binary(Binary::Mul, period, rounds);
+        self.b.binary(Binary::Sub, x, offset)
+    }
+
+    /// Noise whose kind is a string: known here, or compared with every name when it runs.
+    fn named_noise(&mut self, name: Reg, mut noise: Noise, src: &[Reg]) -> Vec<Reg> {
+        if let Some(known) = self.b.known_int(name) {
+            if let Some(kind) = NoiseKind::from_name(Symbol(known).text()).filter(|kind| !noise.periodic || kind.repeats()) {
+                noise.kind = kind;
+                return self.noise(noise, src);
+            }
+        }
+        let (name, zero) = (self.fixed(name), self.b.float(0.0));
+        let src: Vec<Reg> = src.iter().map(|&reg| self.fixed(reg)).collect();
+        let result: Vec<Reg> = (0..noise.outputs).map(|_| self.b.copy(zero, true)).collect();
+        self.noise_choice(name, noise, &src, &result, NoiseKind::ALL);
+        result.into_iter().map(|reg| self.fixed(reg)).collect()
+    }
+
+    fn noise_choice(&mut self, name: Reg, mut noise: Noise, src: &[Reg], result: &[Reg], kinds: &[NoiseKind]) {
+        let Some((&kind, others)) = kinds.split_first() else {
+            let text = "there is no noise \"%s\"".to_owned();
+            let format = TextFormat { text, args: vec![TextArg::Strings(1)] };
+            self.b.call(Routine::Print(PrintTo::Error, format), &[], vec![name], self.span);
+            return;
+        };
+        if noise.periodic && !kind.repeats() {
+            return self.noise_choice(name, noise, src, result, others);
+        }
+        let mut test = self.b.int(0);
+        for text in kind.names() {
+            let text = self.symbol(text);
+            let same = self.b.int_binary(IntBinary::Eq, name, text);
+            test = self.b.int_binary(IntBinary::Or, test, same);
+        }
+        self.b.open();
+        noise.kind = kind;
+        let value = self.noise(noise, src);
+        self.store(&Value::Regs(result.to_vec()), &Value::Regs(value));
+        let then = self.b.close();
+        self.b.open();
+        self.noise_choice(name, noise, src, result, others);
+        let otherwise = self.b.close();
+        self.b.push(Node::If(test, then, otherwise));
     }
 
     /// The matrix from one named space to another, and whether both are known.
@@ -93,7 +161,8 @@ impl Lower<'_> {
                     regs = self.convert(&regs, Base::Float, Base::Matrix);
                 }
                 let (matrix, _) = self.space_matrix(space, to);
-                self.matrix_product(&regs, &matrix)
+                // Differs from the manual, as OSL does: the numbers come before the space on a column vector.
+                self.matrix_product(&matrix, &regs)
             }
             _ => {
                 let (matrix, _) = self.space_matrix(space, to);
@@ -101,18 +170,4 @@ impl Lower<'_> {
             }
         }
     }
-}
-
-/// The kind a literal name stands for.
-fn named_kind(name: &Argument) -> Option<NoiseKind> {
-    let Argument::In(Expr { kind: ExprKind::String(name), .. }) = name else { return Some(NoiseKind::Perlin) };
-    Some(match name.as_str() {
-        "perlin" | "snoise" => NoiseKind::Perlin,
-        "uperlin" | "noise" => NoiseKind::UPerlin,
-        "simplex" => NoiseKind::Simplex,
-        "usimplex" => NoiseKind::USimplex,
-        "cell" => NoiseKind::Cell,
-        "hash" => NoiseKind::Hash,
-        _ => return None,
-    })
 }

@@ -22,6 +22,14 @@ impl Lower<'_> {
             (UnaryOp::Neg, _) => regs.into_iter().map(|reg| self.b.unary(Unary::Neg, reg)).collect(),
             (UnaryOp::BitNot, _) => vec![self.b.int_unary(IntUnary::BitNot, regs[0])],
             (UnaryOp::Not, Base::Int) => vec![self.b.int_unary(IntUnary::Not, regs[0])],
+            (UnaryOp::Not, Base::Closure) => {
+                if self.b.program.constant(regs[0]) == Some(Const::NoClosure) {
+                    return vec![self.b.int(1)];
+                }
+                let dst = self.b.program.reg(Kind::Int, false);
+                self.b.instr(Instr::ClosureAbsent(dst, regs[0]));
+                vec![dst]
+            }
             (UnaryOp::Not, Base::String) => {
                 let empty = self.b.constant(Const::String(0));
                 vec![self.b.int_binary(IntBinary::Eq, regs[0], empty)]

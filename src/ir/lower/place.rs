@@ -11,6 +11,8 @@ pub struct Target {
     var: VarId,
     /// Fields from the variable down to the value, as long as no array has been indexed.
     fields: Vec<u32>,
+    /// True once an array has been indexed: from there on the value is part of an array, not of a binding.
+    indexed: bool,
     /// The value the way leads to.
     value: Value,
     /// A component of it.
@@ -27,19 +29,22 @@ impl Lower<'_> {
     /// Walks to a place. Index expressions are evaluated once, here.
     pub(super) fn target(&mut self, place: &Place) -> Target {
         let value = self.variable(place.var);
-        let mut target = Target { var: place.var, fields: Vec::new(), value, component: None };
+        let mut target = Target { var: place.var, fields: Vec::new(), indexed: false, value, component: None };
         for access in &place.path {
             match access {
                 Access::Field(at) => {
                     if let Value::Struct(fields) = &target.value {
                         target.value = fields[*at as usize].clone();
                     }
-                    target.fields.push(*at);
+                    if !target.indexed {
+                        target.fields.push(*at);
+                    }
                 }
                 Access::Element(index) => {
                     let index = self.reg(index);
                     let index = self.fixed(index);
                     target.value = self.element(&target.value, index);
+                    target.indexed = true;
                 }
                 Access::Component(index) => {
                     let index = self.reg(index);
@@ -139,7 +144,7 @@ impl Lower<'_> {
             return self.store_item(*id, *index, &regs);
         }
         let rebind = self.vars[target.var.0 as usize].as_ref().is_some_and(|bound| bound.level == self.level);
-        if !rebind {
+        if !rebind || target.indexed {
             return self.store(&target.value, value);
         }
         let ready = self.rebound(&target.value, value);

@@ -55,6 +55,17 @@ pub fn zero_of(kind: Kind) -> Const {
     }
 }
 
+impl Value {
+    /// How many elements an array has; 1 for what is none.
+    pub fn len(&self) -> usize {
+        match self {
+            Value::Array { dims, .. } => dims[0] as usize,
+            Value::Struct(fields) => fields.first().map_or(1, Value::len),
+            Value::Regs(_) | Value::Item { .. } => 1,
+        }
+    }
+}
+
 impl Lower<'_> {
     /// A zero value of a type; arrays are new ones, filled with zero.
     pub fn zero(&mut self, ty: &Type) -> Value {
@@ -189,6 +200,9 @@ impl Lower<'_> {
                 Value::Struct(a.iter().zip(b).map(|(a, b)| self.copy_into(a, b)).collect())
             }
             (Value::Array { .. }, _) => {
+                if from.len() < to.len() {
+                    self.clear(to);
+                }
                 self.copy_elements(to, from);
                 to.clone()
             }
