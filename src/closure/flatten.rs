@@ -44,7 +44,7 @@ pub struct Sweep {
     in_top: Vec<bool>,
     step_of: Vec<u32>,
     leaves_of: Vec<(u32, u32)>,
-    emitters: Vec<(Weight, u32, bool)>,
+    emitters: Vec<(Weight, u32, bool, NodeId)>,
 }
 
 impl Sweep {
@@ -206,20 +206,28 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
                 yes.is_none_or(|w| sweep.send(n, then, layer, w))
                     && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
             }
-            Node::Leaf { .. } => leaf.as_ref().is_none_or(|(leaf, name)| place(lobes, tree, leaf, name, layer, weight)),
+            Node::Leaf { .. } => leaf.as_ref().is_none_or(|(leaf, name)| place(lobes, tree, leaf, (name, NodeId(index)), layer, weight)),
         };
         if !fits {
-            drop_lane(&mut lobes.dropped, leaf.as_ref().map_or("too many lobes", |(_, name)| name), 0);
+            let name = leaf.as_ref().map_or("too many lobes", |(_, name)| name);
+            drop_lane(&mut lobes.dropped, (name, NodeId(index)), 0);
         }
     }
 }
 
 /// Places a leaf under a layer: adds its lobes, and sends the weight on to what it nests.
-fn place(lobes: &mut Lobes, tree: &Tree, leaf: &Leaf, name: &'static str, layer: u32, weight: Weight) -> bool {
+fn place(
+    lobes: &mut Lobes,
+    tree: &Tree,
+    leaf: &Leaf,
+    name: (&'static str, NodeId),
+    layer: u32,
+    weight: Weight,
+) -> bool {
     let n = tree.lanes;
     let mut fits = true;
     if leaf.emits || leaf.hole {
-        lobes.sweep.emitters.push((weight, layer, leaf.hole));
+        lobes.sweep.emitters.push((weight, layer, leaf.hole, name.1));
     }
     fits &= lobes.sweep.send(n, leaf.top, layer, weight);
     for part in leaf.parts.iter() {
@@ -256,8 +264,8 @@ fn place(lobes: &mut Lobes, tree: &Tree, leaf: &Leaf, name: &'static str, layer:
     fits
 }
 
-fn drop_lane(dropped: &mut Vec<Dropped>, closure: &'static str, lane: usize) {
-    let entry = Dropped { closure, lane: lane as u32 };
+fn drop_lane(dropped: &mut Vec<Dropped>, (closure, node): (&'static str, NodeId), lane: usize) {
+    let entry = Dropped { closure, lane: lane as u32, node };
     if dropped.len() < MOST_DROPPED && !dropped.contains(&entry) {
         dropped.push(entry);
     }
@@ -271,7 +279,7 @@ fn add_lobe(
     layer: u32,
     weight: Weight,
     tint: Option<[Floats; 3]>,
-    name: &'static str,
+    name: (&'static str, NodeId),
 ) -> bool {
     if lobes.lobes.len() >= MOST {
         return false;
@@ -384,12 +392,12 @@ fn emit(lobes: &mut Lobes) {
     for column in [&mut lobes.emission.x, &mut lobes.emission.y, &mut lobes.emission.z, &mut lobes.holdout] {
         column.fill(0.0);
     }
-    for &(weight, layer, hole) in &lobes.sweep.emitters {
+    for &(weight, layer, hole, node) in &lobes.sweep.emitters {
         for lane in 0..n {
             let through = if layer == NONE { 1.0 } else { lobes.layers.through_of(layer)[lane] };
             let [x, y, z] = std::array::from_fn(|c| lobes.sweep.get(weight, c, lane, n) * through);
             if !(x.is_finite() && y.is_finite() && z.is_finite()) {
-                drop_lane(&mut lobes.dropped, if hole { "holdout" } else { "emission" }, lane);
+                drop_lane(&mut lobes.dropped, (if hole { "holdout" } else { "emission" }, node), lane);
             } else if hole {
                 lobes.holdout[lane] += (x + y + z) / 3.0;
             } else {

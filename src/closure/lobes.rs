@@ -6,7 +6,7 @@ use super::layering::Layers;
 use super::sampling::SampleScratch;
 use super::settings::Settings;
 use super::surfaces::{NONE, Surfaces, with_source};
-use super::tree::Tree;
+use super::tree::{NodeId, Tree};
 use crate::lang::closures::ClosureTable;
 use crate::math::columns::Column3;
 
@@ -26,6 +26,8 @@ pub struct Dropped {
     pub closure: &'static str,
     /// The lane.
     pub lane: u32,
+    /// Its node in the tree, for [`super::tree::Tree::site`].
+    pub node: NodeId,
 }
 
 /// One lobe of one lane, for people to read.

@@ -98,6 +98,8 @@ pub struct Tree {
     pub ints: Vec<i32>,
     /// The value of `Ci`.
     pub root: Option<NodeId>,
+    /// Where in the text each leaf was written, as the host numbers places; in the order of the nodes.
+    sites: Vec<(NodeId, u32)>,
 }
 
 impl Tree {
@@ -110,6 +112,18 @@ impl Tree {
         self.floats.clear();
         self.ints.clear();
         self.root = None;
+        self.sites.clear();
+    }
+
+    /// Notes where in the text the newest leaf was written.
+    pub fn note_site(&mut self, leaf: NodeId, site: u32) {
+        self.sites.push((leaf, site));
+    }
+
+    /// Where in the text a leaf was written, if that was noted.
+    pub fn site(&self, leaf: NodeId) -> Option<u32> {
+        let at = self.sites.binary_search_by_key(&leaf, |&(node, _)| node).ok()?;
+        Some(self.sites[at].1)
     }
 
     /// Adds a node.

@@ -5,6 +5,7 @@ use glam::Vec3;
 use velour::bsdf::lambert::{Lambert, Translucent};
 use velour::bsdf::microfacet::Microfacet;
 use velour::bsdf::oren_nayar::OrenNayar;
+use velour::bsdf::velvet::Velvet;
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
 use velour::bsdf::{Eval, Scatter, View};
 use velour::math::quadrature::gauss_legendre;
@@ -74,6 +75,9 @@ fn samples_follow_their_densities() {
     passes::<Lambert>([0.0; 4], "lambert");
     passes::<Translucent>([0.0; 4], "translucent");
     passes::<OrenNayar>([0.5, 0.0, 0.0, 0.0], "oren_nayar");
+    for m in [0.1, 0.3, 1.0] {
+        passes::<Velvet>([m, 0.0, 0.0, 0.0], "velvet");
+    }
     for r in [0.06, 0.25, 1.0] {
         passes::<Sheen<EXACT, true>>([r, 0.1, 0.0, 0.0], "sheen");
         passes::<Sheen<EXACT, false>>([r, 0.1, 0.0, 0.0], "sheen exact");

@@ -5,6 +5,7 @@ use glam::Vec3;
 use velour::bsdf::Scatter;
 use velour::bsdf::microfacet::Microfacet;
 use velour::bsdf::oren_nayar::OrenNayar;
+use velour::bsdf::velvet::Velvet;
 use velour::bsdf::sheen::reference::{self, Model};
 use velour::bsdf::sheen::shadowing::{Exact, Published, soften};
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
@@ -101,6 +102,7 @@ fn every_model_is_finite_everywhere() {
             check::<Microfacet<true, true>>([-1.0, 0.9, eta, 0.0], &mut random, k);
         }
         check::<OrenNayar>([-1.0, 0.0, 0.0, 0.0], &mut random, k);
+        check::<Velvet>([r, 0.0, 0.0, 0.0], &mut random, k);
         check::<Sheen<EXACT, true>>([-1.0, 0.1, 0.0, 0.0], &mut random, k);
         check::<Sheen<PUBLISHED, true>>([-1.0, 1.0, 0.0, 0.0], &mut random, k);
     }

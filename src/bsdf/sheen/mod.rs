@@ -8,6 +8,9 @@
 //! fitted from 0.06; below it they give the albedo of 0.06, which for the exact terms is too large (by up to
 //! 0.34 softened, 0.26 not, at r = 0.01): a base under such a sheen is too dark, never too bright. The published fit itself
 //! gains energy there, and its curve is too small by up to 0.2 at cosines below 0.03.
+//!
+//! Decision (2026-11-22): the constants of the exact Lambda are fitted for the least error of the albedo (6.6e-5, Lambda within
+//! 0.57 %), because energy is what layering needs, instead of for the least error of Lambda alone (0.51 %, albedo 1.0e-4).
 
 pub mod albedo;
 pub mod charlie;
