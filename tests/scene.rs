@@ -1,7 +1,7 @@
 //! Scenes: what they may say, and one clear message with a place for each thing they may not.
 
 use std::path::PathBuf;
-use velour::exec::{Emission, Group};
+use velour::exec::Group;
 use velour::scene::{GroupCompiler, GroupSpec, ParamType, Place, Scene, SceneError, Shape, Usage, Values, parse_group};
 
 /// Knows every shader but `missing`, and keeps nothing.
@@ -11,7 +11,9 @@ impl GroupCompiler for Anything {
     fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
         match spec.layers.iter().find(|l| l.shader == "missing") {
             Some(layer) => Err(SceneError::at(layer.place.clone(), "shader `missing` is not found")),
-            None => Ok(Group { albedo: glam::Vec3::splat(0.5), through: 0.0, emission: Emission::None }),
+            None => {
+                Ok(velour::compile::compile("surface any() { Ci = diffuse(N); }").unwrap().group().build().unwrap())
+            }
         }
     }
 }

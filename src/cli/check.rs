@@ -1,6 +1,6 @@
 //! `velour check`: reports every mistake in shader files.
 
-use super::{CompileArgs, Failure, MessageFormat, colored};
+use super::{CompileArgs, Failure, MessageFormat, colored, say, tell};
 use std::path::PathBuf;
 use velour_grammar::Format;
 
@@ -33,7 +33,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
         let bytes = match std::fs::read(path) {
             Ok(bytes) => bytes,
             Err(error) => {
-                eprintln!("{name}: error: {error}");
+                tell(&format!("{name}: error: cannot be read: {error}\n"));
                 unreadable = true;
                 continue;
             }
@@ -41,7 +41,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
         let (diagnostics, sources) = if args.preprocess {
             let text = String::from_utf8_lossy(&bytes);
             let (output, diagnostics, sources) = velour_grammar::preprocess(&name, &text, &compiler.options);
-            print!("{output}");
+            say(&output);
             (diagnostics, sources)
         } else {
             let checked = compiler.check_bytes(&name, &bytes);
@@ -50,7 +50,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
         wrong |= diagnostics.has_errors();
         let text = sources.render(&diagnostics, format, colored());
         if !text.is_empty() {
-            eprintln!("{}", text.trim_end());
+            tell(&format!("{}\n", text.trim_end()));
         }
     }
     match (unreadable, wrong) {

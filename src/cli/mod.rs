@@ -1,11 +1,13 @@
 //! The command line: arguments, subcommands, messages to people. All printing and all exit codes are here.
 
 mod check;
+mod info;
+mod info_file;
 mod render;
 mod tree;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -34,6 +36,8 @@ enum Command {
     Check(check::CheckArgs),
     /// Show the closure tree of a shader
     Tree(tree::TreeArgs),
+    /// List closures and functions, or what a shader declares
+    Info(info::InfoArgs),
 }
 
 /// How shaders are compiled.
@@ -96,6 +100,7 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Tree(args) => tree::run(&args),
+        Command::Info(args) => info::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -106,9 +111,19 @@ pub fn run() -> ExitCode {
 
 fn fail(message: &str, status: u8) -> ExitCode {
     if !message.is_empty() {
-        eprintln!("{message}");
+        tell(&format!("{message}\n"));
     }
     ExitCode::from(status)
+}
+
+/// Prints to standard output. A pipe that closes early is no reason to complain.
+fn say(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// Prints to standard error.
+fn tell(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// True when messages may be coloured.

@@ -1,6 +1,6 @@
 //! `velour render`: a scene in, an image out.
 
-use super::{CompileArgs, Failure};
+use super::{CompileArgs, Failure, say, tell};
 use crate::closure::settings::Shadowing;
 use crate::closure::{self, Layering};
 use crate::exec::Report;
@@ -92,23 +92,24 @@ impl Progress for Bar {
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let path = args.output.as_ref().or(args.image.as_ref());
-    let path = path.ok_or_else(|| Failure::Usage("error: no image is named\n  help: add `-o picture.png`".to_owned()))?;
+    let path =
+        path.ok_or_else(|| Failure::Usage("error: no image is named\n  help: add `-o picture.png`".to_owned()))?;
     output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
     let compiler = ShaderFiles::new(args.compile.compiler()?);
     let scene = Scene::load(&args.scene, &args.path, &compiler).map_err(failure)?;
     for warning in &scene.warnings {
-        eprintln!("{warning}");
+        tell(&format!("{warning}\n"));
     }
     let settings = settings(args).with_options(&scene.options);
     if args.explain {
-        print!("{}", Plan::new(&scene, &settings));
+        say(&Plan::new(&scene, &settings).to_string());
     }
     let bar = Bar::new();
     let image = render(&scene, &settings, &bar).map_err(Failure::Wrong)?;
     bar.bar.finish_and_clear();
-    tell(&image.about.reports);
+    pass_on(&image.about.reports);
     output::write(&image, path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
-    eprintln!("{}", last_line(&image, path, start.elapsed().as_secs_f64()));
+    tell(&last_line(&image, path, start.elapsed().as_secs_f64()));
     Ok(())
 }
 
@@ -139,12 +140,12 @@ fn settings(args: &RenderArgs) -> Settings {
 }
 
 /// Passes on what shaders said.
-fn tell(reports: &[Report]) {
+fn pass_on(reports: &[Report]) {
     for report in reports {
         match report {
-            Report::Output(text) => print!("{text}"),
-            Report::File(name, text) => eprint!("{name}: {text}"),
-            Report::Warning(text) | Report::Error(text) | Report::Fatal(text) => eprintln!("{text}"),
+            Report::Output(text) => say(text),
+            Report::File(name, text) => tell(&format!("{name}: {text}")),
+            Report::Warning(text) | Report::Error(text) | Report::Fatal(text) => tell(&format!("{text}\n")),
         }
     }
 }
@@ -153,7 +154,7 @@ fn last_line(image: &Image, path: &std::path::Path, seconds: f64) -> String {
     let about = &image.about;
     let rate = about.paths as f64 / about.seconds_tracing.max(1e-9) / 1e6;
     format!(
-        "{}: {} x {}, {} samples a pixel, {seconds:.2} s, {rate:.2} million paths a second",
+        "{}: {} x {}, {} samples a pixel, {seconds:.2} s, {rate:.2} million paths a second\n",
         path.display(),
         image.width,
         image.height,

@@ -1,9 +1,9 @@
 //! `velour tree`: shows what a shader's `Ci` is, at one point, as a tree or as flattened lobes.
 
-use super::{CompileArgs, Failure};
+use super::{CompileArgs, Failure, say, tell};
 use crate::closure::print::tree_text;
-use crate::closure::{Layering, Lobes, Settings};
 use crate::closure::settings::Shadowing;
+use crate::closure::{Layering, Lobes, Settings};
 use crate::exec::{Group, Machine, Points, Report};
 use crate::ir::lower::Binding;
 use crate::math::columns::Column3;
@@ -52,25 +52,21 @@ pub fn run(args: &TreeArgs) -> Result<(), Failure> {
     }
     let group = builder.build().map_err(|error| Failure::Wrong(error.to_string()))?;
     if args.program {
-        print!("{}", crate::ir::print::program_text(group.program()));
+        say(&crate::ir::print::program_text(group.program()));
     }
     let points = point(args);
     let mut machine = Machine::new();
     let tree = machine.shade(&group, &points);
-    let text = if args.lobes {
-        lobe_table(args, &group, tree, &points)
-    } else {
-        tree_text(group.table(), tree, 0)
-    };
+    let text = if args.lobes { lobe_table(args, &group, tree, &points) } else { tree_text(group.table(), tree, 0) };
     for report in machine.take_reports() {
         match report {
-            Report::Output(text) => print!("{text}"),
-            Report::File(_, text) => print!("{text}"),
-            Report::Warning(text) | Report::Error(text) => eprintln!("{text}"),
+            Report::Output(text) => say(&text),
+            Report::File(name, text) => tell(&format!("{name}: {text}")),
+            Report::Warning(text) | Report::Error(text) => tell(&format!("{text}\n")),
             Report::Fatal(text) => return Err(Failure::Wrong(text)),
         }
     }
-    println!("{}", if text.is_empty() { "0" } else { &text });
+    say(&format!("{}\n", if text.is_empty() { "0" } else { &text }));
     Ok(())
 }
 
@@ -99,7 +95,8 @@ fn lobe_table(args: &TreeArgs, group: &Group, tree: &crate::closure::tree::Tree,
     let mut lobes = Lobes::new(settings);
     let wo = Column3::splat(-points.i.get(0), 1);
     lobes.flatten(group.table(), tree, &wo, &points.ng);
-    let mut out = format!("{:<14} {:<26} {:>7} {:>6} {:>8} {:>6}", "lobe", "weight", "albedo", "depth", "through", "pick");
+    let mut out =
+        format!("{:<14} {:<26} {:>7} {:>6} {:>8} {:>6}", "lobe", "weight", "albedo", "depth", "through", "pick");
     for lobe in lobes.describe(0) {
         let [r, g, b] = lobe.weight;
         let weight = format!("({r:.4}, {g:.4}, {b:.4})");

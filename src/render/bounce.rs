@@ -6,7 +6,7 @@ use super::settings::LightStrategy;
 use super::shading::{event, ray_type};
 use super::shadow::ShadowRay;
 use super::surface::fill;
-use super::wave::{Wave, emission_weight, gather};
+use super::wave::{Path, Wave, emission_weight, gather};
 use super::world::{Sky, World};
 use glam::Vec3;
 
@@ -45,7 +45,8 @@ impl Wave {
         for (lane, &i) in batch.iter().enumerate() {
             let path = &mut self.paths[i as usize];
             if path.clear {
-                path.alpha = 1.0 - self.shading.holdout()[lane].clamp(0.0, 1.0);
+                // Of what clear surfaces have let through, the hole lets the background show.
+                path.alpha = 1.0 - through(path) * self.shading.holdout()[lane].clamp(0.0, 1.0);
             }
             // Constant emission was added when the hits were sorted.
             if !world.plan.materials[material].emits || world.emission_of(path.hit.primitive).is_some() {
@@ -173,6 +174,12 @@ impl Wave {
             if carried <= 0.0 {
                 continue;
             }
+            if kind == event::STRAIGHT && path.clear {
+                // Before roulette, which would only add noise to it.
+                path.alpha = 1.0 - throughput.element_sum() / 3.0;
+            } else {
+                path.clear = false;
+            }
             if bounce >= world.settings.rr_depth {
                 let survival = carried.min(if bounce > DEEP { 0.95 } else { 1.0 });
                 if self.densities[lane] >= survival {
@@ -196,10 +203,6 @@ impl Wave {
                 event::DELTA_REFRACT => hit.ray_type = ray_type::REFRACTION,
                 // Straight through: still the same ray to whoever asks.
                 _ => {}
-            }
-            match kind {
-                event::STRAIGHT if path.clear => path.alpha = 0.0,
-                _ => path.clear = false,
             }
             self.next.push(i);
         }
@@ -226,4 +229,9 @@ impl Wave {
             path.radiance = shown * 0.5 + Vec3::splat(0.5);
         }
     }
+}
+
+/// The part of the light from behind that clear surfaces have let through, while there is nothing else on the path.
+fn through(path: &Path) -> f32 {
+    path.throughput.element_sum() / 3.0
 }

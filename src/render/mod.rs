@@ -12,6 +12,7 @@ pub mod accel;
 mod bounce;
 mod camera;
 mod few;
+mod host;
 mod image;
 pub mod light;
 pub mod output;
@@ -66,7 +67,7 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     let failed = AtomicBool::new(world.reports.iter().any(|report| matches!(report, Report::Fatal(_))));
     let start = Instant::now();
     pool.broadcast(|_| {
-        let mut wave = Wave::new(settings);
+        let mut wave = Wave::new(&world);
         let mut sums = Vec::new();
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);

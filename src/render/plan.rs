@@ -59,6 +59,8 @@ pub struct MaterialPlan {
     pub emits: bool,
     /// It may scatter.
     pub scatters: bool,
+    /// It may be a hole in the alpha channel.
+    pub holds_out: bool,
     /// What it reads.
     pub needs: Needs,
 }
@@ -87,6 +89,7 @@ impl Plan {
             .map(|m| MaterialPlan {
                 emits: m.surface.can_emit(),
                 scatters: m.surface.can_scatter(),
+                holds_out: m.surface.models().contains(&Model::Holdout),
                 needs: Needs::of(&m.surface),
             })
             .collect();
@@ -99,8 +102,7 @@ impl Plan {
         let lit = |p: &&crate::scene::Primitive| is_light(objects[p.object as usize].material);
         let lights = if sampling { scene.geometry.primitives.iter().filter(lit).count() } else { 0 };
         let background = scene.background.map(|b| (b, &scene.materials[b.material as usize].surface));
-        let constant =
-            background.is_none_or(|(_, g)| same_all_over(g) || !g.can_emit());
+        let constant = background.is_none_or(|(_, g)| same_all_over(g) || !g.can_emit());
         let background_table = match background {
             // A constant sky is what scattering samples already reach best; sampling it as well only adds noise.
             Some((b, _)) if sampling && !constant && b.resolution > 0 => b.resolution.max(32),

@@ -1,9 +1,10 @@
 //! The only door from the renderer to shaders and closures: a batch of points in, emission, light and directions out.
 
-use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::closure::tree::Tree;
-use crate::exec::{Group, Machine, Points, Report};
+use crate::closure::{Evaluation, Lobes, Samples, Settings};
+use crate::exec::{Group, Host, Machine, Points, Report};
 use crate::math::columns::Column3;
+use std::sync::Arc;
 
 /// Kinds of rays, as `raytype()` tests them.
 pub mod ray_type {
@@ -45,15 +46,15 @@ pub struct Shading {
 }
 
 impl Shading {
-    /// Fresh scratch.
-    pub fn new(settings: Settings) -> Self {
+    /// Fresh scratch, for shaders that ask `host`.
+    pub fn new(settings: Settings, host: Arc<Host>) -> Self {
         Shading {
             points: Points::default(),
             toward: Column3::default(),
             random: Column3::default(),
             evaluation: Evaluation::default(),
             samples: Samples::default(),
-            machine: Machine::new(),
+            machine: Machine::with_host(host),
             lobes: Lobes::new(settings),
             viewer: Column3::default(),
             reports: Vec::new(),
@@ -93,10 +94,15 @@ impl Shading {
         let news = self.machine.take_reports();
         self.failed |= news.iter().any(|report| matches!(report, Report::Fatal(_)));
         self.reports.extend(news);
+        let mut last = "";
         for dropped in self.lobes.dropped() {
+            // A batch lists every lane; one line for all of them is enough.
+            if std::mem::replace(&mut last, dropped.closure) == dropped.closure {
+                continue;
+            }
             let (place, closure) = (group.place_of(dropped.closure), dropped.closure);
-            let message = format!("{place}: error: `{closure}` is dropped where a parameter or weight of it is not a number");
-            let report = Report::Error(message);
+            let what = "is dropped where a parameter or weight of it is not a number";
+            let report = Report::Error(format!("{place}: error: `{closure}` {what}"));
             if !self.reports.contains(&report) {
                 self.reports.push(report);
             }

@@ -130,7 +130,8 @@ fn tangents(geometry: &Geometry, primitive: &Primitive, n: Vec3) -> (Vec3, Vec3)
 fn footprint(points: &mut Points, lane: usize, hit: &RayHitPoint, n: Vec3) {
     let i = hit.direction;
     let x = if i.x.abs() > 0.01 { Vec3::new(i.z, 0.0, -i.x) } else { Vec3::new(0.0, -i.z, i.y) }.normalize_or_zero();
-    let y = i.cross(x);
+    // In this order the cross product of the two derivatives of P faces the viewer, as `calculatenormal` wants it.
+    let y = x.cross(i);
     let width = hit.radius + hit.spread * hit.t;
     let cos = -i.dot(n);
     let project = |d: Vec3| if cos.abs() > 1e-3 { d + i * (d.dot(n) / cos) } else { d };

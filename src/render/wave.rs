@@ -8,7 +8,7 @@ use super::accel::NOTHING;
 use super::camera::tent;
 use super::light::power_heuristic;
 use super::random;
-use super::settings::{LightStrategy, Settings};
+use super::settings::LightStrategy;
 use super::shading::{Shading, ray_type};
 use super::shadow::ShadowQueue;
 use super::surface::RayHitPoint;
@@ -28,7 +28,8 @@ pub struct Path {
     pub pdf_solid_angle: f32,
     /// The sample so far.
     pub radiance: Vec3,
-    /// The part of the sample that is not background.
+    /// The part of the sample that is not background; a clear surface may weigh more than 1, so only the mean of many
+    /// samples is a share.
     pub alpha: f32,
     /// True while nothing but clear surfaces has been met.
     pub clear: bool,
@@ -90,7 +91,7 @@ pub struct Wave {
 
 impl Wave {
     /// Empty scratch.
-    pub fn new(settings: &Settings) -> Self {
+    pub fn new(world: &World) -> Self {
         Wave {
             paths: Vec::new(),
             active: Vec::new(),
@@ -100,7 +101,7 @@ impl Wave {
             starts: Vec::new(),
             shadows: ShadowQueue::default(),
             sky_shadows: ShadowQueue::default(),
-            shading: Shading::new(settings.closure),
+            shading: Shading::new(world.settings.closure, world.host.clone()),
             densities: [0.0; crate::exec::MAX_LANES],
             dropped: Dropped::default(),
             rays: 0,
@@ -238,7 +239,8 @@ impl Wave {
                     let weight = emission_weight(world, path);
                     gather(path, path.throughput * emission * weight, material, &mut self.dropped);
                 }
-                if last || !world.plan.materials[material].scatters {
+                let plan = &world.plan.materials[material];
+                if (last || !plan.scatters) && !(plan.holds_out && path.clear) {
                     continue;
                 }
             }

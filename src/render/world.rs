@@ -8,11 +8,12 @@ use super::settings::Settings;
 use super::shading::{Shading, ray_type};
 use super::sky::SkyTable;
 use super::surface::{RayHitPoint, fill};
-use crate::exec::{Report, Group, MAX_LANES};
+use crate::exec::{Group, Host, MAX_LANES, Report};
 use crate::scene::{Scene, Shape};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 /// What rays see that hit nothing.
 pub enum Sky {
@@ -41,6 +42,8 @@ pub struct World<'s> {
     pub accel: Accel,
     /// The lights.
     pub lights: Lights,
+    /// What shaders may ask.
+    pub host: Arc<Host>,
     /// The background.
     pub sky: Sky,
     /// The radiance of each object, where it is one constant; zero for objects that do not emit.
@@ -53,16 +56,18 @@ impl<'s> World<'s> {
     /// Prepares `scene`; runs shaders where emission has to be known beforehand.
     pub fn new(scene: &'s Scene, settings: &'s Settings) -> Self {
         let plan = Plan::new(scene, settings);
-        let mut shading = Shading::new(settings.closure);
+        let host = Arc::new(super::host::host(&scene.camera, settings));
+        let mut shading = Shading::new(settings.closure, host.clone());
         let first_of_object = first_primitives(scene);
         let emission = |(object, first): (usize, &u32)| constant_emission(scene, &plan, &mut shading, object, *first);
         let object_emission: Vec<Option<Vec3>> = first_of_object.iter().enumerate().map(emission).collect();
         let powers = light_powers(scene, &plan, &mut shading, &object_emission);
-        let sky = sky(scene, &plan, settings, &mut shading);
+        let sky = sky(scene, &plan, settings, &mut shading, &host);
         World {
             camera: RayCamera::new(&scene.camera, settings.width, settings.height),
             accel: Accel::new(&scene.geometry),
             lights: Lights::new(&scene.geometry, &powers),
+            host,
             sky,
             object_emission,
             reports: shading.take_reports(),
@@ -200,7 +205,7 @@ pub fn fill_sky(shading: &mut Shading, lane: usize, direction: Vec3, ray_type: i
     }
 }
 
-fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading) -> Sky {
+fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading, host: &Arc<Host>) -> Sky {
     let Some(background) = scene.background else { return Sky::Constant(Vec3::ZERO) };
     let material = background.material as usize;
     let group = &scene.materials[material].surface;
@@ -212,15 +217,15 @@ fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading) -
         return if radiance.is_finite() { Sky::Constant(radiance) } else { Sky::Shader { material, table: None } };
     }
     let side = plan.background_table as usize;
-    let table = if side == 0 { None } else { SkyTable::new(side, &sky_brightness(group, side, settings)) };
+    let table = if side == 0 { None } else { SkyTable::new(side, &sky_brightness(group, side, settings, host)) };
     Sky::Shader { material, table }
 }
 
 /// The brightest channel of the background at the centre of each cell of its table.
-fn sky_brightness(group: &Group, side: usize, settings: &Settings) -> Vec<f32> {
+fn sky_brightness(group: &Group, side: usize, settings: &Settings, host: &Arc<Host>) -> Vec<f32> {
     let mut brightness = vec![0.0; side * side];
     brightness.par_chunks_mut(side).enumerate().for_each_init(
-        || Shading::new(settings.closure),
+        || Shading::new(settings.closure, host.clone()),
         |shading, (y, row)| {
             for (chunk, cells) in row.chunks_mut(MAX_LANES).enumerate() {
                 shading.resize(cells.len());

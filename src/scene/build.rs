@@ -220,7 +220,10 @@ impl<'c> Builder<'c> {
     /// A second group of the same name replaces the surface or the displacement of the first.
     fn add_material(&mut self, name: Option<&str>, spec: GroupSpec, group: crate::exec::Group) {
         if usage_is_displacement(&spec) {
-            self.scene.warnings.push(format!("{}: warning: displacement is read but not applied", spec.place));
+            let (place, name) = (&spec.place, &spec.name);
+            let warning =
+                format!("{place}: warning: displacement group `{name}` is not applied; its surface stays where it is");
+            self.scene.warnings.push(warning);
         }
         if let Some(&id) = name.and_then(|n| self.by_name.get(n)) {
             let material = &mut self.scene.materials[id as usize];

@@ -1,7 +1,10 @@
 //! The renderer against answers known exactly, against itself, and against bad input.
 
+mod cloth;
 mod determinism;
 mod exact;
 mod files;
+mod furnace;
 mod materials;
+mod shaders;
 mod speed;

@@ -1,59 +1,50 @@
-//! Materials for the render tests: the one place that knows how a group comes to be.
+//! Shaders for the render tests, as texts, and how a scene of them becomes a picture.
 
-use glam::Vec3;
 use std::path::PathBuf;
-use velour::exec::{Emission, Group};
 use velour::render::{Image, Settings, Silent, render};
-use velour::scene::{GroupCompiler, GroupSpec, Scene, SceneError, Values};
+use velour::scene::{Scene, ShaderFiles};
 
-/// Compiles a few named shaders without a compiler.
-pub struct Materials;
+/// The shaders that scenes of the tests name, all in memory.
+const SHADERS: [&str; 8] = [
+    "surface matte(color Cs = 0.5, float through = 0) { Ci = Cs * diffuse(N) + through * transparent(); }",
+    "surface cloth(color base = color(0.6, 0.05, 0.05), color tint = 1, float rough = 0.4)
+     { Ci = sheen(base * diffuse(N), N, tint, rough); }",
+    "surface emitter(float power = 1) { Ci = (power / (M_PI * surfacearea())) * emission(); }",
+    "surface glow(color c = 1, color Cs = 0) { Ci = c * emission() + Cs * diffuse(N); }",
+    "surface ramp() { Ci = 2 * u * emission(); }",
+    "surface sky(color c = 0.3) { Ci = c * background(); }",
+    "surface sun(float base = 0.1, float sharpness = 100)
+     { Ci = (base + 20 * pow(max(I[1], 0.0), sharpness)) * background(); }",
+    // What u multiplies overflows for every u, so the difference of two infinities is computed at each point.
+    "surface nan(color Cs = 0.5, float huge = 1e38)
+     { float infinite = huge * (1e10 + u); Ci = (infinite - infinite) * emission() + Cs * diffuse(N); }",
+];
 
-impl GroupCompiler for Materials {
-    fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
-        let layer = spec.layers.last().expect("a group has a layer");
-        let numbers = |name: &str, default: &[f32]| -> Vec<f32> {
-            let find = |p: &velour::scene::ParamValue| match &p.values {
-                Values::Floats(v) if p.name == name => Some(v.clone()),
-                _ => None,
-            };
-            layer.params.iter().find_map(find).unwrap_or(default.to_vec())
-        };
-        let color = |name: &str, default: f32| Vec3::from_slice(&numbers(name, &[default; 3]));
-        let number = |name: &str, default: f32| numbers(name, &[default])[0];
-        let dark = Group { albedo: Vec3::ZERO, through: 0.0, emission: Emission::None };
-        Ok(match layer.shader.as_str() {
-            "matte" | "cloth" => Group { albedo: color("Cs", 0.5), through: number("through", 0.0), ..dark },
-            "emitter" => Group { emission: Emission::Power(number("power", 1.0)), ..dark },
-            "glow" => Group { albedo: color("Cs", 0.0), emission: Emission::Uniform(color("c", 1.0)), ..dark },
-            "ramp" => Group { emission: Emission::Ramp, ..dark },
-            "sky" => Group { emission: Emission::Uniform(color("c", 0.3)), ..dark },
-            "sun" => Group {
-                emission: Emission::Sky {
-                    base: number("base", 0.1),
-                    gain: 20.0,
-                    sharpness: number("sharpness", 100.0),
-                },
-                ..dark
-            },
-            "nan" => Group { albedo: color("Cs", 0.5), emission: Emission::NotANumber, ..dark },
-            name => {
-                let message = format!("shader `{name}` is not found");
-                return Err(SceneError::at(layer.place.clone(), message));
-            }
-        })
-    }
+/// The compiler of the tests: the shaders above, and those of `more`.
+pub fn materials(more: &[&str]) -> ShaderFiles {
+    let add = |files: ShaderFiles, text: &&str| files.with_shader(text).unwrap_or_else(|e| panic!("{e}"));
+    SHADERS.iter().chain(more).fold(ShaderFiles::default(), add)
 }
 
-/// Loads a scene given as text.
+/// Loads a scene given as text or as a file.
 pub fn scene(xml: &str) -> Scene {
-    let folders: Vec<PathBuf> = Vec::new();
-    Scene::load(xml, &folders, &Materials).unwrap_or_else(|e| panic!("{e}"))
+    scene_with(xml, &[])
 }
 
-/// Renders a scene given as text.
+/// The same, with more shaders.
+pub fn scene_with(xml: &str, shaders: &[&str]) -> Scene {
+    let folders: Vec<PathBuf> = Vec::new();
+    Scene::load(xml, &folders, &materials(shaders)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Renders a scene of the shaders above.
 pub fn picture(xml: &str, change: impl FnOnce(&mut Settings)) -> Image {
-    let scene = scene(xml);
+    picture_with(xml, &[], change)
+}
+
+/// Renders a scene of the shaders above and of `shaders`.
+pub fn picture_with(xml: &str, shaders: &[&str], change: impl FnOnce(&mut Settings)) -> Image {
+    let scene = scene_with(xml, shaders);
     let mut settings = Settings { width: 64, height: 64, samples: 16, threads: 2, ..Settings::default() };
     settings = settings.with_options(&scene.options);
     change(&mut settings);

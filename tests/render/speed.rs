@@ -64,7 +64,7 @@ fn hierarchies() {
     let xml = folder.path().join("s.xml");
     let text = r#"<World><ShaderGroup>shader matte l1;</ShaderGroup><Model filename="ball.obj"/></World>"#;
     std::fs::write(&xml, text).unwrap();
-    let ball = velour::scene::Scene::load(xml.to_str().unwrap(), &[], &super::materials::Materials).unwrap();
+    let ball = scene(xml.to_str().unwrap());
     for (name, scene, reach) in [("figure 1", &scene(FIGURE1), 5.0), ("ball", &ball, 1.0)] {
         let rays = rays(60_000, reach);
         for method in [Method::Wide, Method::Binary, Method::Wide, Method::Binary] {

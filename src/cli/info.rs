@@ -1,0 +1,177 @@
+//! `velour info`: what the language offers, one closure or builtin of it, or what a shader file declares.
+
+use super::info_file::shader_text;
+use super::{CompileArgs, Failure, say};
+use crate::compile::{CompileError, STDOSL};
+use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
+use crate::lang::closures::{ClosureSpec, ClosureTable, ParamKind, ParamSpec};
+use crate::scene::nearest;
+use std::collections::BTreeSet;
+use std::path::Path;
+use velour_grammar::ast::{FunctionDecl, Item};
+use velour_grammar::print::print_type;
+
+/// Arguments of `velour info`.
+#[derive(clap::Args)]
+pub struct InfoArgs {
+    /// A closure, a function or a shader file; nothing for a list of all closures and functions
+    subject: Option<String>,
+    #[command(flatten)]
+    compile: CompileArgs,
+}
+
+/// Prints what is known of the subject.
+pub fn run(args: &InfoArgs) -> Result<(), Failure> {
+    let table = ClosureTable::standard();
+    let header = header_functions();
+    let Some(subject) = &args.subject else {
+        say(&everything(&table, &header));
+        return Ok(());
+    };
+    if subject.ends_with(".osl") || Path::new(subject).is_file() {
+        return file(args, Path::new(subject));
+    }
+    let text = one(&table, &header, subject);
+    if text.is_empty() {
+        return Err(Failure::Usage(unknown(&table, &header, subject)));
+    }
+    say(&text);
+    Ok(())
+}
+
+fn file(args: &InfoArgs, path: &Path) -> Result<(), Failure> {
+    let shader = args.compile.compiler()?.compile_file(path).map_err(|error| match error {
+        CompileError::File { .. } => Failure::Usage(error.to_string()),
+        other => Failure::Wrong(other.to_string()),
+    })?;
+    say(&shader_text(&shader.typed));
+    Ok(())
+}
+
+/// The functions that the standard header writes in the language itself.
+fn header_functions() -> Vec<FunctionDecl> {
+    let parsed = velour_grammar::parse("stdosl.osl", STDOSL, &velour_grammar::Options::default());
+    let function = |item| if let Item::Function(function) = item { Some(function) } else { None };
+    parsed.file.items.into_iter().filter_map(function).collect()
+}
+
+fn everything(table: &ClosureTable, header: &[FunctionDecl]) -> String {
+    let mut out = String::from("closures:\n");
+    for spec in &table.specs {
+        out += &format!("    {}\n        {}\n", closure_head(spec), spec.doc);
+    }
+    let names = function_names(header);
+    let (missing, present): (Vec<&str>, Vec<&str>) = names.into_iter().partition(|name| NOT_YET.contains(name));
+    out += &format!("\nfunctions:\n{}", columns(&present));
+    out += &format!("\nfunctions that are known but not run yet:\n{}", columns(&missing));
+    out
+}
+
+/// The names of all functions, in order.
+fn function_names(header: &[FunctionDecl]) -> BTreeSet<&str> {
+    let mut names: BTreeSet<&str> = header.iter().map(|f| f.name.name.as_str()).collect();
+    for name in builtins::names() {
+        names.insert(name);
+    }
+    names
+}
+
+/// Names in lines of at most a hundred characters.
+fn columns(names: &[&str]) -> String {
+    let (mut out, mut width) = (String::new(), 0);
+    for name in names {
+        if width + name.len() + 1 > 96 {
+            out.push('\n');
+            width = 0;
+        }
+        out += if width == 0 { "    " } else { " " };
+        out += name;
+        width += name.len() + 1;
+    }
+    out + "\n"
+}
+
+fn one(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
+    let mut out = String::new();
+    for (_, spec) in table.named(name) {
+        out += &format!("closure color {}\n    {}\n", closure_head(spec), spec.doc);
+        for (list, title) in [(&spec.params, "parameters"), (&spec.keywords, "keyword parameters")] {
+            if !list.is_empty() {
+                out += &format!("    {title}:\n");
+            }
+            for param in list {
+                out += &format!("        {} {}: {}\n", kind_name(param.kind), param.name, param.doc);
+            }
+        }
+    }
+    for signature in builtins::signatures(name).unwrap_or_default() {
+        out += &format!("{}\n", signature_text(name, signature));
+    }
+    for function in header.iter().filter(|f| f.name.name == name) {
+        out += &format!("{}\n", function_text(function));
+    }
+    if NOT_YET.contains(&name) {
+        out += "    velour knows this function and does not run it yet: a call is an error\n";
+    }
+    out
+}
+
+fn closure_head(spec: &ClosureSpec) -> String {
+    let param = |p: &ParamSpec| format!("{} {}", kind_name(p.kind), p.name);
+    let keyword = |p: &ParamSpec| format!("[\"{}\", {}]", p.name, kind_name(p.kind));
+    let all: Vec<String> = spec.params.iter().map(param).chain(spec.keywords.iter().map(keyword)).collect();
+    format!("{}({})", spec.name, all.join(", "))
+}
+
+fn kind_name(kind: ParamKind) -> &'static str {
+    match kind {
+        ParamKind::Float => "float",
+        ParamKind::Int => "int",
+        ParamKind::Color => "color",
+        ParamKind::Vector => "vector",
+        ParamKind::Normal => "normal",
+        ParamKind::String => "string",
+        ParamKind::Closure => "closure color",
+    }
+}
+
+fn signature_text(name: &str, signature: &Signature) -> String {
+    let formal = |(formal, output): &(Formal, bool)| {
+        let ty = match formal {
+            Formal::Type(ty) => ty.to_string(),
+            Formal::Any => "any".to_owned(),
+            Formal::AnyArray => "any[]".to_owned(),
+        };
+        if *output { format!("output {ty}") } else { ty }
+    };
+    let mut formals: Vec<String> = signature.formals.iter().map(formal).collect();
+    if signature.variadic {
+        formals.push("...".to_owned());
+    }
+    if signature.options {
+        formals.push("[\"name\", value]...".to_owned());
+    }
+    format!("{} {name}({})", signature.returns, formals.join(", "))
+}
+
+fn function_text(function: &FunctionDecl) -> String {
+    let params = function.params.iter().map(|param| {
+        let output = if param.output { "output " } else { "" };
+        format!("{output}{} {}", print_type(&param.ty), param.name.name)
+    });
+    let params: Vec<String> = params.collect();
+    format!("{} {}({})", print_type(&function.return_type), function.name.name, params.join(", "))
+}
+
+fn unknown(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
+    let mut names = function_names(header);
+    for spec in &table.specs {
+        names.insert(spec.name);
+    }
+    let names: Vec<&str> = names.into_iter().collect();
+    let help = match nearest(name, &names) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "`velour info` lists all closures and functions".to_owned(),
+    };
+    format!("error: `{name}` is no closure, function or shader file\n  help: {help}")
+}

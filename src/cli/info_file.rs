@@ -1,0 +1,99 @@
+//! What a shader declares, in the manner of oslinfo: kind, name, parameters with types, defaults and metadata.
+
+use crate::check::typed::{Expr, ExprKind, Metadata, Shader, ShaderParam};
+use crate::lang::types::{Base, Type};
+use velour_grammar::ast::{ShaderKind, UnaryOp};
+
+/// The declaration of a shader as text.
+pub fn shader_text(shader: &Shader) -> String {
+    let kind = match shader.kind {
+        ShaderKind::Generic => "shader",
+        ShaderKind::Surface => "surface",
+        ShaderKind::Displacement => "displacement",
+        ShaderKind::Volume => "volume",
+    };
+    let mut out = format!("{kind} \"{}\"\n", shader.name);
+    out.extend(shader.metadata.iter().map(|entry| metadata_text("    ", entry)));
+    for param in &shader.params {
+        out += &param_text(shader, param);
+    }
+    out
+}
+
+fn param_text(shader: &Shader, param: &ShaderParam) -> String {
+    let variable = &shader.variables[param.var.0 as usize];
+    let output = if param.output { "output " } else { "" };
+    let mut out = format!("    \"{}\" \"{output}{}\"\n", variable.name, variable.ty);
+    match &variable.ty.structure() {
+        Some(structure) => {
+            let fields: Vec<String> = structure.fields.iter().map(|(name, ty)| format!("{ty} {name}")).collect();
+            out += &format!("\t\tfields: {{{}}}\n", fields.join(", "));
+        }
+        None => out += &format!("\t\t{}\n", default_text(&variable.ty, param.default.as_ref())),
+    }
+    out.extend(param.metadata.iter().map(|entry| metadata_text("\t\t", entry)));
+    out
+}
+
+fn metadata_text(indent: &str, entry: &Metadata) -> String {
+    let value = known(&entry.ty, &entry.value).unwrap_or_else(|| "?".to_owned());
+    format!("{indent}metadata: {} {} = {value}\n", entry.ty, entry.name)
+}
+
+fn default_text(ty: &Type, default: Option<&Expr>) -> String {
+    match default.and_then(|value| known(ty, value)) {
+        Some(text) => format!("Default value: {text}"),
+        // Computed from globals or other parameters, so there is nothing to show before the shader runs.
+        None => "Unknown default value".to_owned(),
+    }
+}
+
+/// A value that can be told without running the shader.
+fn known(ty: &Type, value: &Expr) -> Option<String> {
+    if ty.base() == Some(Base::Closure) {
+        return Some("0".to_owned());
+    }
+    let mut parts = Vec::new();
+    constants(value, &mut parts)?;
+    let single = ty.element_type().base()?.components();
+    // A float stands for all components of a triple, and for the diagonal of a matrix.
+    if parts.len() == 1 && !ty.is_array() && single == 3 {
+        parts = vec![parts[0].clone(); 3];
+    }
+    if parts.len() == 1 && !ty.is_array() && single == 16 {
+        parts = (0..16).map(|i| if i % 5 == 0 { parts[0].clone() } else { "0".to_owned() }).collect();
+    }
+    Some(if parts.len() == 1 && !ty.is_array() { parts.remove(0) } else { format!("[ {} ]", parts.join(" ")) })
+}
+
+/// The numbers and strings of a constant expression, in order.
+fn constants(value: &Expr, out: &mut Vec<String>) -> Option<()> {
+    match &value.kind {
+        ExprKind::Int(x) => out.push(x.to_string()),
+        ExprKind::Float(x) => out.push(x.to_string()),
+        ExprKind::String(x) => out.push(format!("{x:?}")),
+        ExprKind::Convert(inner) => return constants(inner, out),
+        ExprKind::Unary(UnaryOp::Neg, inner) => {
+            let start = out.len();
+            constants(inner, out)?;
+            for text in &mut out[start..] {
+                *text = text.strip_prefix('-').map_or(format!("-{text}"), str::to_owned);
+            }
+        }
+        ExprKind::Construct(parts) | ExprKind::Aggregate(parts) => {
+            let triple = value.ty.base().is_some_and(Base::is_triple);
+            let start = out.len();
+            parts.iter().try_for_each(|part| constants(part, out))?;
+            if triple && out.len() == start + 1 {
+                let only = out[start].clone();
+                out.extend([only.clone(), only]);
+            }
+        }
+        ExprKind::ConstructIn(space, parts) => {
+            constants(space, out)?;
+            parts.iter().try_for_each(|part| constants(part, out))?;
+        }
+        _ => return None,
+    }
+    Some(())
+}

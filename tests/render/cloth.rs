@@ -1,0 +1,111 @@
+//! Cloth in closed rooms and under lights, and what happens to cloth whose parameters are not numbers.
+
+use super::materials::{middle, picture_with};
+use velour::closure::Layering;
+use velour::exec::Report;
+use velour::render::{LightStrategy, Settings};
+
+/// Emits a half and, scaled by the view alone, reflects exactly a half, whatever the direction.
+const HALF: &str = "surface half(float rough = 0.4)
+{ Ci = color(0.5) * emission() + 0.5 * sheen(diffuse(N), N, color(1), rough); }";
+
+#[test]
+fn a_closed_room_of_cloth_sums_its_series() {
+    for rough in [0.15, 0.4, 1.0] {
+        let scene = format!(
+            r#"<World><Camera eye="0.3,0.2,0.1"/><ShaderGroup>float rough {rough}; shader half l1;</ShaderGroup>
+            <Sphere center="0,0,0" radius="1"/></World>"#
+        );
+        for lights in [LightStrategy::Combined, LightStrategy::ScatteringOnly, LightStrategy::LightsOnly] {
+            let image = picture_with(&scene, &[HALF], |s| {
+                (s.width, s.height, s.samples, s.lights) = (48, 48, 64, lights);
+                s.closure.layering = Layering::View;
+            });
+            let mean = image.mean()[0];
+            assert!((mean - 1.0).abs() < 8e-3, "r = {rough}, {lights:?}: {mean}");
+        }
+    }
+}
+
+/// Light samples and scattering samples must agree about a cloth, which they do only if its density is right.
+#[test]
+fn cloth_under_a_lamp_is_the_same_by_every_strategy() {
+    let scene = r#"<World><Camera eye="0,1,3" look_at="0,0,0" fov="60"/>
+      <ShaderGroup>float rough 0.25; shader cloth l1;</ShaderGroup><Sphere center="0,0,0" radius="1"/>
+      <ShaderGroup is_light="yes">color c 5 5 5; shader glow l1;</ShaderGroup>
+      <Quad corner="-2,2,-1" edge_x="4,0,0" edge_y="0,0,4"/></World>"#;
+    let mean = |lights| middle(&picture_with(scene, &[], |s| (s.samples, s.lights, s.max_bounces) = (256, lights, 1)));
+    let combined = mean(LightStrategy::Combined);
+    for lights in [LightStrategy::ScatteringOnly, LightStrategy::LightsOnly] {
+        let other = mean(lights);
+        assert!((other / combined - 1.0).abs() < 5e-3, "{lights:?}: {other} against {combined}");
+    }
+}
+
+fn bits(change: impl FnOnce(&mut Settings)) -> Vec<u32> {
+    let scene = r#"<World><Camera eye="0.3,0.2,0.1" fov="110"/>
+      <ShaderGroup>shader woven l1;</ShaderGroup><Sphere center="0,0,0" radius="1"/>
+      <ShaderGroup>color c 2 2 2; shader glow l1;</ShaderGroup><Sphere center="0.3,0.3,-0.6" radius="0.1"/>
+      <ShaderGroup>shader glass l1;</ShaderGroup><Sphere center="0.3,-0.1,-0.5" radius="0.2"/></World>"#;
+    let woven = "surface woven(float rough = 0.3) {
+      float thread = noise(40 * P);
+      color c = mix(color(0.6, 0.1, 0.1), color(0.2, 0.1, 0.5), thread);
+      if (thread > 0.6) Ci = sheen(c * diffuse(N), N, color(0.9), rough + 0.5 * thread);
+      else Ci = sheen(sheen(c * oren_nayar(N, 0.4), N, color(0.3), 0.8), N, c, rough);
+      Ci += color(0.05) * emission();
+      for (int i = 0; i < 3; ++i) if (thread * 4 > i) Ci = 0.95 * Ci + 0.01 * translucent(N);
+    }";
+    let glass =
+        "surface glass() { float e = backfacing() ? 1 / 1.5 : 1.5; Ci = microfacet(\"ggx\", N, 0.1 * u, e, 2); }";
+    let image = picture_with(scene, &[woven, glass], |s| {
+        (s.width, s.height, s.samples, s.max_bounces) = (40, 24, 8, 5);
+        change(s);
+    });
+    assert!(image.about.reports.is_empty(), "{:?}", image.about.reports);
+    image.pixels.iter().map(|p| p.to_bits()).collect()
+}
+
+#[test]
+fn a_closed_room_of_woven_cloth_is_the_same_however_it_is_cut() {
+    let reference = bits(|s| s.threads = 1);
+    assert!(reference == bits(|s| s.threads = 2), "threads");
+    for width in [1, 8, 127] {
+        assert!(reference == bits(|s| s.batch_width = width), "batch width {width}");
+    }
+    for size in [1, 7, 64] {
+        assert!(reference == bits(|s| s.tile_size = size), "tile size {size}");
+    }
+    for size in [1, 100, 100_000] {
+        assert!(reference == bits(|s| s.wave_size = size), "wave size {size}");
+    }
+}
+
+/// A cloth whose roughness is not a number for u above 1/2: there the sheen is gone and the base is as without it.
+#[test]
+fn a_parameter_that_is_not_a_number_drops_its_lobe_and_is_told_once() {
+    let torn = "surface torn(float huge = 1e38)
+{
+    float infinite = huge * (1e10 + u);
+    float rough = u > 0.5 ? infinite - infinite : 0.4;
+    Ci = sheen(0.5 * diffuse(N), N, color(1), rough);
+}";
+    let scene = r#"<World><Camera eye="0,0,3" look_at="0,0,0" fov="40"/>
+      <ShaderGroup>color c 1 1 1; shader sky l1;</ShaderGroup><Background/>
+      <ShaderGroup>shader torn l1;</ShaderGroup><Quad corner="-1,-1,0" edge_x="2,0,0" edge_y="0,2,0"/></World>"#;
+    for (threads, batch_width) in [(1, 128), (2, 3)] {
+        let image = picture_with(scene, &[torn], |s| (s.threads, s.batch_width) = (threads, batch_width));
+        assert!(image.pixels.iter().all(|p| p.is_finite()));
+        let [Report::Error(report)] = image.about.reports.as_slice() else { panic!("{:?}", image.about.reports) };
+        assert!(report.starts_with("memory:5:10: error: `sheen` is dropped"), "{report}");
+        let mean = |from: u32, to: u32| {
+            let sum: f64 = (from..to)
+                .flat_map(|x| (0..64).map(move |y| (x, y)))
+                .map(|(x, y)| f64::from(image.pixel(x, y)[0]))
+                .sum();
+            sum / f64::from((to - from) * 64)
+        };
+        assert!((mean(34, 64) - 0.5).abs() < 1e-3, "the base alone: {}", mean(34, 64));
+        // Seen head on, the smaller of the two albedos takes more from the base than the sheen gives.
+        assert!((mean(0, 30) - 0.5).abs() > 0.01, "sheen and base: {}", mean(0, 30));
+    }
+}
