@@ -102,7 +102,8 @@ fn every_model_is_finite_everywhere() {
             check::<Microfacet<true, true>>([-1.0, 0.9, eta, 0.0], &mut random, k);
         }
         check::<OrenNayar>([-1.0, 0.0, 0.0, 0.0], &mut random, k);
-        check::<Velvet>([r, 0.0, 0.0, 0.0], &mut random, k);
+        check::<Velvet>([0.0, 0.0, 0.0, 0.0], &mut random, k);
+        check::<Velvet>([0.5, 0.0, 0.0, 0.0], &mut random, k);
         check::<Sheen<EXACT, true>>([-1.0, 0.1, 0.0, 0.0], &mut random, k);
         check::<Sheen<PUBLISHED, true>>([-1.0, 1.0, 0.0, 0.0], &mut random, k);
     }
