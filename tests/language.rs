@@ -15,10 +15,14 @@ fn run(text: &str, lanes: usize) -> String {
     }
     let mut machine = Machine::new();
     machine.shade(&group, &points);
-    machine.take_reports().into_iter().map(|r| match r {
-        Report::Output(t) => t,
-        other => format!("{other:?}\n"),
-    }).collect()
+    machine
+        .take_reports()
+        .into_iter()
+        .map(|r| match r {
+            Report::Output(t) => t,
+            other => format!("{other:?}\n"),
+        })
+        .collect()
 }
 
 #[test]

@@ -206,7 +206,9 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
                 yes.is_none_or(|w| sweep.send(n, then, layer, w))
                     && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
             }
-            Node::Leaf { .. } => leaf.as_ref().is_none_or(|(leaf, name)| place(lobes, tree, leaf, (name, NodeId(index)), layer, weight)),
+            Node::Leaf { .. } => {
+                leaf.as_ref().is_none_or(|(leaf, name)| place(lobes, tree, leaf, (name, NodeId(index)), layer, weight))
+            }
         };
         if !fits {
             let name = leaf.as_ref().map_or("too many lobes", |(_, name)| name);

@@ -110,17 +110,9 @@ impl Group {
         rays || self.inputs.iter().any(|(_, input)| *input != Input::SurfaceArea)
     }
 
-    /// Where a closure of this name is written first, as `file:line:column`.
-    pub fn place_of(&self, closure: &str) -> String {
-        let mut place = None;
-        visit_instrs(&self.program.body, &mut |instr| {
-            if let Instr::Leaf { closure: id, span, .. } = instr {
-                if place.is_none() && self.table.get(*id).name == closure {
-                    place = Some((self.locate)(*span));
-                }
-            }
-        });
-        place.unwrap_or_default()
+    /// A place noted in a closure tree, as `file:line:column`.
+    pub fn place(&self, site: u32) -> String {
+        (self.locate)(Span { first: site, last: site })
     }
 }
 

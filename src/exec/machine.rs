@@ -74,7 +74,7 @@ impl Machine {
     }
 
     /// Runs a group over points and gives the closure tree of the batch. Further results stay readable through
-    /// [`Machine::output_floats`] until the next batch.
+    /// [`Machine::float`] until the next batch.
     pub fn shade(&mut self, group: &Group, points: &Points) -> &Tree {
         let n = points.len;
         let regs = self.files.entry(group.id).or_default();
@@ -364,7 +364,12 @@ impl Run<'_> {
                 self.array_set(*array, *component, (*index, *src), *masked, *span);
             }
             Instr::Call { routine, dst, src, span } => self.call(routine, dst, src, *span),
-            Instr::Leaf { dst, closure, params, keywords, .. } => self.leaf(*dst, *closure, params, keywords),
+            Instr::Leaf { dst, closure, params, keywords, span } => {
+                self.leaf(*dst, *closure, params, keywords);
+                if let Some(leaf) = self.closure(*dst) {
+                    self.tree.note_site(leaf, span.first);
+                }
+            }
             Instr::ClosureAdd(d, a, b) => {
                 let (a, b) = (self.closure(*a), self.closure(*b));
                 self.regs.closures[d.0 as usize] = self.tree.add(a, b);

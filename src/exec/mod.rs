@@ -1,7 +1,7 @@
 //! Program and points to closure tree: the machine that runs shaders over batches.
 //!
 //! A register is a column, one number a lane, or one number for all lanes when the optimizer found it uniform. Each
-//! instruction is decoded once and then loops over the lanes ([`kernels`]). Control flow narrows a mask; what only some
+//! instruction is decoded once and then loops over the lanes (`kernels`). Control flow narrows a mask; what only some
 //! lanes do is blended in by masked moves.
 
 mod arrays;

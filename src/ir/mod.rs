@@ -1,7 +1,7 @@
 //! The intermediate program: structured code over registers of single numbers, and the way a typed shader becomes one.
 //!
 //! [`lower::lower`] writes the layers of a group one after the other into one [`program::Program`], with parameters bound and
-//! functions expanded. [`print`] shows it, [`verify`] states what a program promises: a verified program cannot fail.
+//! functions expanded. [`mod@print`] shows it, [`verify`] states what a program promises: a verified program cannot fail.
 //!
 //! Decision (2026-11-22): instructions work on single numbers, not on triples, because folding, uniform values,
 //! derivatives and dead code then work a component at a time with one set of rules, and a column loop over one number

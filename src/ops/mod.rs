@@ -10,7 +10,7 @@
 //! | reflection, refraction, Fresnel's formula | [`fresnel`] |
 //! | the `hash` overloads | [`hash`] |
 //! | matrices and what they do to points, vectors and normals | [`matrix`] |
-//! | `format` and its checks | [`format`] |
+//! | `format` and its checks | [`mod@format`] |
 //! | regular expressions | [`pattern`] |
 //! | splines and their inverse | [`spline`] |
 //! | strings | [`string`] |

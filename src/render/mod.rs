@@ -1,7 +1,7 @@
 //! Renders scenes: a wavefront path tracer over tiles.
 //!
 //! [`render`] prepares a [`world::World`] (hierarchy, lights, background, plan), then threads take tile after tile. Each
-//! has one [`wave::Wave`] of scratch, in which the tile's paths advance together: intersect, sort by material, shade in
+//! has one `Wave` of scratch, in which the tile's paths advance together: intersect, sort by material, shade in
 //! batches, trace shadows, scatter. Shaders and closures are met in one file, `shading`.
 //!
 //! An image depends on scene, seed and sample count. It does not depend on thread count, batch width, wave size, tile

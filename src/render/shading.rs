@@ -86,27 +86,12 @@ impl Shading {
         }
         let tree = self.machine.shade(group, &self.points);
         self.lobes.flatten(group.table(), tree, &self.viewer, &self.points.ng);
-        self.hear(group);
-    }
-
-    /// Collects what the shader said and which closures were dropped.
-    fn hear(&mut self, group: &Group) {
+        if !self.lobes.dropped().is_empty() {
+            report_dropped(group, tree, &self.lobes, &mut self.reports);
+        }
         let news = self.machine.take_reports();
         self.failed |= news.iter().any(|report| matches!(report, Report::Fatal(_)));
         self.reports.extend(news);
-        let mut last = "";
-        for dropped in self.lobes.dropped() {
-            // A batch lists every lane; one line for all of them is enough.
-            if std::mem::replace(&mut last, dropped.closure) == dropped.closure {
-                continue;
-            }
-            let (place, closure) = (group.place_of(dropped.closure), dropped.closure);
-            let what = "is dropped where a parameter or weight of it is not a number";
-            let report = Report::Error(format!("{place}: error: `{closure}` {what}"));
-            if !self.reports.contains(&report) {
-                self.reports.push(report);
-            }
-        }
     }
 
     /// True once a shader cannot be run.
@@ -142,5 +127,22 @@ impl Shading {
     /// What shaders printed and complained of since the last call.
     pub fn take_reports(&mut self) -> Vec<Report> {
         std::mem::take(&mut self.reports)
+    }
+}
+
+/// Names each closure that was dropped in some lane, with the place where it is written, once.
+fn report_dropped(group: &Group, tree: &Tree, lobes: &Lobes, reports: &mut Vec<Report>) {
+    let mut last = None;
+    for dropped in lobes.dropped() {
+        // A batch lists every lane; one line for all of them is enough.
+        if last.replace(dropped.node) == Some(dropped.node) {
+            continue;
+        }
+        let place = tree.site(dropped.node).map_or(String::new(), |site| format!("{}: ", group.place(site)));
+        let what = "is dropped where a parameter or weight of it is not a number";
+        let report = Report::Error(format!("{place}error: `{}` {what}", dropped.closure));
+        if !reports.contains(&report) {
+            reports.push(report);
+        }
     }
 }

@@ -5,10 +5,10 @@ use glam::Vec3;
 use velour::bsdf::Scatter;
 use velour::bsdf::microfacet::Microfacet;
 use velour::bsdf::oren_nayar::OrenNayar;
-use velour::bsdf::velvet::Velvet;
 use velour::bsdf::sheen::reference::{self, Model};
 use velour::bsdf::sheen::shadowing::{Exact, Published, soften};
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
+use velour::bsdf::velvet::Velvet;
 use velour::measure::statistics::Random;
 
 fn direction(random: &mut Random, grazing: bool) -> Vec3 {

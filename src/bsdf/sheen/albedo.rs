@@ -8,7 +8,9 @@
 //! fit and Ashikhmin's visibility need degree 12 x 8 for the kink of the one at cos = 0.5 and the gain of the other; their
 //! numbers are constants too, because tables built at the first use cost start-up time and a lock in the lane loop.
 
-use super::fits::{ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_SOFT, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET};
+use super::fits::{
+    ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_SOFT, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET,
+};
 use super::shadowing::Shadowing;
 use crate::bsdf::power::log2;
 
