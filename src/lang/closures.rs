@@ -133,7 +133,30 @@ const SHADOWING: ParamSpec = param(
     ParamKind::String,
     "shadowing term: \"exact\" (default), \"published\" (fit of the paper) or \"ashikhmin\" (real-time visibility)",
 );
-const SOFTENING: ParamSpec = param("softening", ParamKind::Int, "1 (default) softens the terminator by eq. 4, 0 does not");
+const SOFTENING: ParamSpec =
+    param("softening", ParamKind::Int, "1 (default) softens the terminator by eq. 4, 0 does not");
+
+/// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
+pub const NOT_YET: &[&str] = &[
+    "phong",
+    "ward",
+    "subsurface",
+    "oren_nayar_diffuse_bsdf",
+    "burley_diffuse_bsdf",
+    "dielectric_bsdf",
+    "conductor_bsdf",
+    "generalized_schlick_bsdf",
+    "translucent_bsdf",
+    "transparent_bsdf",
+    "subsurface_bssrdf",
+    "chiang_hair_bsdf",
+    "uniform_edf",
+    "anisotropic_vdf",
+    "medium_vdf",
+];
+
+const LABEL: ParamSpec =
+    param("label", ParamKind::String, "a name for the host; velour carries it and gives it no meaning");
 
 fn standard_specs() -> Vec<ClosureSpec> {
     use ParamKind::*;
@@ -141,7 +164,8 @@ fn standard_specs() -> Vec<ClosureSpec> {
         name,
         model,
         params: params.to_vec(),
-        keywords: keywords.to_vec(),
+        // Every closure takes a label, after the keywords that its model reads.
+        keywords: keywords.iter().cloned().chain([LABEL]).collect(),
         doc,
     };
     let microfacet = [
@@ -153,9 +177,16 @@ fn standard_specs() -> Vec<ClosureSpec> {
         ETA,
         param("refract", Int, "0 reflects, 1 refracts, 2 does both"),
     ];
-    let sheen_tint = param("tint", Color, "color of the sheen; its largest component scales the albedo taken from the base");
+    let sheen_tint =
+        param("tint", Color, "color of the sheen; its largest component scales the albedo taken from the base");
     vec![
-        spec("emission", Model::Emission, &[], &[], "emits its weight as radiance, both sides of the normal's hemisphere"),
+        spec(
+            "emission",
+            Model::Emission,
+            &[],
+            &[],
+            "emits its weight as radiance, both sides of the normal's hemisphere",
+        ),
         spec("background", Model::Background, &[], &[], "radiance of the sky"),
         spec("diffuse", Model::Diffuse, &[NORMAL], &[], "Lambert's reflection"),
         spec(
@@ -167,11 +198,23 @@ fn standard_specs() -> Vec<ClosureSpec> {
         ),
         spec("translucent", Model::Translucent, &[NORMAL], &[], "Lambert's transmission"),
         spec("transparent", Model::Transparent, &[], &[], "lets light pass straight through"),
-        spec("reflection", Model::Reflection, &[NORMAL, ETA], &[], "mirror with dielectric Fresnel; eta 0 reflects all"),
+        spec(
+            "reflection",
+            Model::Reflection,
+            &[NORMAL, ETA],
+            &[],
+            "mirror with dielectric Fresnel; eta 0 reflects all",
+        ),
         spec("refraction", Model::Refraction, &[NORMAL, ETA], &[], "smooth refraction with dielectric Fresnel"),
         spec("microfacet", Model::Microfacet, &microfacet, &[], "rough dielectric reflection and refraction"),
         spec("holdout", Model::Holdout, &[], &[], "a hole in the alpha channel"),
-        spec("debug", Model::Debug, &[param("tag", String, "name of the output")], &[], "a tagged value; scatters nothing"),
+        spec(
+            "debug",
+            Model::Debug,
+            &[param("tag", String, "name of the output")],
+            &[],
+            "a tagged value; scatters nothing",
+        ),
         spec(
             "sheen",
             Model::Sheen,
