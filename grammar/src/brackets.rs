@@ -37,9 +37,7 @@ pub fn mark_items(tokens: &mut [Spanned<'_>], sources: &Sources) -> Vec<Unclosed
     // A bracket is missing somewhere. People write the last brace of an item at the left margin: trusting that
     // keeps one missing bracket from swallowing the rest of the file.
     pair(tokens, |index| {
-        sources.token(index).is_some_and(|t| {
-            t.call == crate::source::NO_CALL && sources.location(t.place).column == 1
-        })
+        sources.token(index).is_some_and(|t| t.call == crate::source::NO_CALL && sources.location(t.place).column == 1)
     })
 }
 
@@ -50,37 +48,21 @@ fn pair(tokens: &mut [Spanned<'_>], ends_item: impl Fn(u32) -> bool) -> Vec<Uncl
     let mut lost = Vec::new();
     for (first, token, last) in tokens {
         let Token::Sym(symbol) = token else { continue };
-        let here = Unclosed {
-            bracket: *symbol,
-            span: Span {
-                first: *first,
-                last: *last,
-            },
-        };
+        let here = Unclosed { bracket: *symbol, span: Span { first: *first, last: *last } };
         match symbol {
             Sym::ParenOpen | Sym::BracketOpen | Sym::BraceOpen => open.push(here),
             Sym::MetaOpen => open.extend([here, here]),
             Sym::ParenClose => close(&mut open, &mut lost, |b| b == Sym::ParenOpen),
-            Sym::BracketClose => close(&mut open, &mut lost, |b| {
-                matches!(b, Sym::BracketOpen | Sym::MetaOpen)
-            }),
+            Sym::BracketClose => close(&mut open, &mut lost, |b| matches!(b, Sym::BracketOpen | Sym::MetaOpen)),
             Sym::BraceClose | Sym::ItemClose => {
                 close(&mut open, &mut lost, |b| b == Sym::BraceOpen);
                 if ends_item(*first) {
                     lost.append(&mut open);
                 }
-                *symbol = if open.is_empty() {
-                    Sym::ItemClose
-                } else {
-                    Sym::BraceClose
-                };
+                *symbol = if open.is_empty() { Sym::ItemClose } else { Sym::BraceClose };
             }
             Sym::Semicolon | Sym::ItemEnd => {
-                *symbol = if open.is_empty() {
-                    Sym::ItemEnd
-                } else {
-                    Sym::Semicolon
-                };
+                *symbol = if open.is_empty() { Sym::ItemEnd } else { Sym::Semicolon };
             }
             _ => {}
         }
@@ -92,15 +74,8 @@ fn pair(tokens: &mut [Spanned<'_>], ends_item: impl Fn(u32) -> bool) -> Vec<Uncl
 
 /// Takes off the innermost bracket of a kind and all inside it. A brace is closed by nothing but a brace.
 fn close(open: &mut Vec<Unclosed>, lost: &mut Vec<Unclosed>, matches: impl Fn(Sym) -> bool) {
-    let wall = open
-        .iter()
-        .rposition(|u| u.bracket == Sym::BraceOpen)
-        .unwrap_or(0);
-    if let Some(at) = open
-        .iter()
-        .rposition(|u| matches(u.bracket))
-        .filter(|at| *at >= wall)
-    {
+    let wall = open.iter().rposition(|u| u.bracket == Sym::BraceOpen).unwrap_or(0);
+    if let Some(at) = open.iter().rposition(|u| matches(u.bracket)).filter(|at| *at >= wall) {
         lost.extend(open.drain(at + 1..));
         open.pop();
     }
@@ -121,10 +96,7 @@ pub fn too_deep(tokens: &[Spanned<'_>]) -> Option<Diagnostic> {
     let mut stack: Vec<(Run, Run)> = Vec::new();
     let (mut run, mut base) = (Run::default(), Run::default());
     for (i, (first, token, last)) in tokens.iter().enumerate() {
-        let span = Span {
-            first: *first,
-            last: *last,
-        };
+        let span = Span { first: *first, last: *last };
         run.tokens += 1;
         let Token::Sym(symbol) = token else { continue };
         let goes_on = matches!(tokens.get(i + 1), Some((_, Token::Sym(Sym::Else), _)));
@@ -161,13 +133,9 @@ pub fn too_deep(tokens: &[Spanned<'_>]) -> Option<Diagnostic> {
 }
 
 fn nested(span: Span) -> Diagnostic {
-    Diagnostic::error(
-        "E0207",
-        span,
-        format!("nested more than {MAX_BRACKETS} levels deep"),
-    )
-    .label("parsing stops here")
-    .help("write intermediate results to variables, or move inner blocks to functions")
+    Diagnostic::error("E0207", span, format!("nested more than {MAX_BRACKETS} levels deep"))
+        .label("parsing stops here")
+        .help("write intermediate results to variables, or move inner blocks to functions")
 }
 
 fn too_long(span: Span, run: Run) -> Diagnostic {

@@ -7,10 +7,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0103", "an included file that was not found"),
     ("E0104", "includes nested too deep"),
     ("E0105", "a file that cannot be read or is not text"),
-    (
-        "E0106",
-        "#else, #elif or #endif without #if, or after #else",
-    ),
+    ("E0106", "#else, #elif or #endif without #if, or after #else"),
     ("E0107", "#if without #endif"),
     ("E0108", "a wrong expression after #if or #elif"),
     ("E0109", "a wrong definition of a macro"),
@@ -31,10 +28,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0208", "one statement or expression that is too long"),
     ("E0301", "a syntax error"),
     ("E0302", "a missing semicolon"),
-    (
-        "E0303",
-        "a bracket that is never closed, or closed by another kind",
-    ),
+    ("E0303", "a bracket that is never closed, or closed by another kind"),
     ("E0304", "a closure of something other than color"),
     ("E0305", "more syntax errors than are shown"),
     ("W0101", "a #warning directive that was reached"),

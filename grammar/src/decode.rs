@@ -31,10 +31,7 @@ fn in_strings_or_comments(text: &str, bytes: &[u32]) -> bool {
         let after = tokens.partition_point(|t| t.place.start <= *byte);
         match after.checked_sub(1).map(|i| tokens[i]) {
             Some(t) if t.place.end > *byte => {
-                matches!(
-                    t.kind,
-                    Kind::Text | Kind::UnclosedText | Kind::UnclosedComment
-                )
+                matches!(t.kind, Kind::Text | Kind::UnclosedText | Kind::UnclosedComment)
             }
             _ => true,
         }

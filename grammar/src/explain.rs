@@ -36,10 +36,7 @@ pub struct Failure {
 
 impl From<Recovery<'_>> for Failure {
     fn from(recovery: Recovery<'_>) -> Self {
-        let dropped = recovery
-            .dropped_tokens
-            .last()
-            .map_or(0, |(_, _, last)| *last);
+        let dropped = recovery.dropped_tokens.last().map_or(0, |(_, _, last)| *last);
         let mut failure = Failure::from(recovery.error);
         failure.resumed_after = dropped.max(failure.span.last);
         failure
@@ -56,25 +53,11 @@ impl From<ParseError<u32, Token<'_>, ()>> for Failure {
             ParseError::User { .. } => (None, Vec::new(), 0),
         };
         let (found, span) = match token {
-            None => (
-                Found::End,
-                Span {
-                    first: end,
-                    last: end,
-                },
-            ),
+            None => (Found::End, Span { first: end, last: end }),
             Some((first, token, last)) => (kind(&token), Span { first, last }),
         };
-        let expected = expected
-            .iter()
-            .map(|e| e.trim_matches('"').to_string())
-            .collect();
-        Failure {
-            found,
-            span,
-            expected,
-            resumed_after: span.last,
-        }
+        let expected = expected.iter().map(|e| e.trim_matches('"').to_string()).collect();
+        Failure { found, span, expected, resumed_after: span.last }
     }
 }
 
@@ -96,26 +79,16 @@ const MAX_SHOWN: usize = 100;
 
 /// Turns failures into messages. One that follows closely on another, or on a message of the lexer, is its echo and
 /// left out.
-pub fn explain(
-    failures: &[Failure],
-    unclosed: &[Unclosed],
-    sources: &Sources,
-    diagnostics: &mut Diagnostics,
-) {
-    let reported: Vec<u32> = diagnostics
-        .list
-        .iter()
-        .filter(|d| d.code.starts_with("E02"))
-        .map(|d| d.span.first)
-        .collect();
+pub fn explain(failures: &[Failure], unclosed: &[Unclosed], sources: &Sources, diagnostics: &mut Diagnostics) {
+    let reported: Vec<u32> =
+        diagnostics.list.iter().filter(|d| d.code.starts_with("E02")).map(|d| d.span.first).collect();
     let mut quiet_until = None;
     let mut shown = 0;
     let mut brackets_seen = HashSet::new();
     for failure in failures {
         let at = failure.span.first;
-        let echo = quiet_until.is_some_and(|quiet| at <= quiet)
-            || near(&reported, at)
-            || failure.found == Found::Broken;
+        let echo =
+            quiet_until.is_some_and(|quiet| at <= quiet) || near(&reported, at) || failure.found == Found::Broken;
         quiet_until = Some(failure.resumed_after.saturating_add(ECHO));
         if echo {
             continue;
@@ -141,9 +114,7 @@ pub fn explain(
 /// True when one of the ascending places lies at or shortly before a token.
 fn near(reported: &[u32], at: u32) -> bool {
     let before = reported.partition_point(|r| *r <= at);
-    before
-        .checked_sub(1)
-        .is_some_and(|i| at - reported[i] <= ECHO)
+    before.checked_sub(1).is_some_and(|i| at - reported[i] <= ECHO)
 }
 
 impl Failure {
@@ -155,10 +126,7 @@ impl Failure {
         if self.found == Found::End {
             return self.at_end(unclosed);
         }
-        if let Some(message) = self
-            .missing_semicolon(sources)
-            .or_else(|| self.stray_bracket(unclosed))
-        {
+        if let Some(message) = self.missing_semicolon(sources).or_else(|| self.stray_bracket(unclosed)) {
             return message;
         }
         let (wanted, found) = (self.wanted(), self.found_text(sources));
@@ -166,19 +134,11 @@ impl Failure {
             "" => format!("{found} does not belong here"),
             _ => format!("expected {wanted}, found {found}"),
         };
-        let label = if wanted.is_empty() {
-            "not expected".to_string()
-        } else {
-            format!("expected {wanted}")
-        };
-        let mut message = Diagnostic::error("E0301", self.span, message)
-            .label(label)
-            .help(self.help(sources));
+        let label = if wanted.is_empty() { "not expected".to_string() } else { format!("expected {wanted}") };
+        let mut message = Diagnostic::error("E0301", self.span, message).label(label).help(self.help(sources));
         if self.found == Found::Kind
-            && let Some(brace) = unclosed
-                .iter()
-                .rev()
-                .find(|u| u.bracket == Sym::BraceOpen && u.span.first < self.span.first)
+            && let Some(brace) =
+                unclosed.iter().rev().find(|u| u.bracket == Sym::BraceOpen && u.span.first < self.span.first)
         {
             message = message.also(brace.span, "this brace is not closed");
         }
@@ -189,13 +149,9 @@ impl Failure {
     fn at_end(&self, unclosed: &[Unclosed]) -> Diagnostic {
         let Some(open) = unclosed.last() else {
             let wanted = self.wanted();
-            return Diagnostic::error(
-                "E0301",
-                self.span,
-                format!("expected {wanted}, found the end of the text"),
-            )
-            .label("the text ends after this")
-            .help("something is missing at the end");
+            return Diagnostic::error("E0301", self.span, format!("expected {wanted}, found the end of the text"))
+                .label("the text ends after this")
+                .help("something is missing at the end");
         };
         never_closed(*open)
     }
@@ -208,15 +164,8 @@ impl Failure {
             return None;
         }
         let previous = previous(self.span.first, sources)?;
-        let place = |index| {
-            sources
-                .token(index)
-                .map(|t| sources.table.outermost(t.place, t.call))
-        };
-        let (a, b) = (
-            sources.location(place(previous)?),
-            sources.location(place(self.span.first)?),
-        );
+        let place = |index| sources.token(index).map(|t| sources.table.outermost(t.place, t.call));
+        let (a, b) = (sources.location(place(previous)?), sources.location(place(self.span.first)?));
         let starts_statement = matches!(
             self.found,
             Found::Kind
@@ -236,17 +185,11 @@ impl Failure {
                         | Sym::Struct
                 )
         );
-        let operator = matches!(
-            self.found,
-            Found::Sym(Sym::ParenClose | Sym::BracketClose | Sym::Colon)
-        );
+        let operator = matches!(self.found, Found::Sym(Sym::ParenClose | Sym::BracketClose | Sym::Colon));
         if operator || !(starts_statement || a.line != b.line || a.file != b.file) {
             return None;
         }
-        let span = Span {
-            first: previous,
-            last: previous,
-        };
+        let span = Span { first: previous, last: previous };
         let text = sources.text(span);
         let message = format!("missing `;` after `{}`", shortened(&text));
         let mut message = Diagnostic::error("E0302", span, message).label("add `;` here");
@@ -268,25 +211,15 @@ impl Failure {
         // A brace inside a function that ends the whole item closes more than it should.
         let too_much = found == Sym::ItemClose && self.has("}");
         let before = unclosed.partition_point(|u| u.span.first < self.span.first);
-        let inner = unclosed[..before]
-            .iter()
-            .rev()
-            .take(16)
-            .find(|u| u.bracket != opener || too_much);
+        let inner = unclosed[..before].iter().rev().take(16).find(|u| u.bracket != opener || too_much);
         if let Some(open) = inner {
-            return Some(
-                never_closed(*open).also(self.span, format!("found `{}` instead", found.text())),
-            );
+            return Some(never_closed(*open).also(self.span, format!("found `{}` instead", found.text())));
         }
         let closes_nothing = found == Sym::ItemClose && self.has("kind");
         closes_nothing.then(|| {
-            Diagnostic::error(
-                "E0303",
-                self.span,
-                format!("this `{}` closes nothing", found.text()),
-            )
-            .label("no matching bracket")
-            .help("remove it, or look for a brace too many above")
+            Diagnostic::error("E0303", self.span, format!("this `{}` closes nothing", found.text()))
+                .label("no matching bracket")
+                .help("remove it, or look for a brace too many above")
         })
     }
 
@@ -306,17 +239,12 @@ impl Failure {
         phrase(self.has("int literal") && !expression, "an integer literal");
         let a_type = self.has("float") && !expression && !self.has("kind");
         phrase(a_type, "a type");
-        phrase(
-            self.has("name") && !expression && !a_type && !self.has("kind"),
-            "a name",
-        );
+        phrase(self.has("name") && !expression && !a_type && !self.has("kind"), "a name");
         if expression || statement || self.has("kind") {
             return list.join(" or ");
         }
         let operators = self.has("*");
-        for terminal in [
-            ";", ";0", ")", "]", "}", "}0", ":", "(", "{", "=", ",", "[[", "while",
-        ] {
+        for terminal in [";", ";0", ")", "]", "}", "}0", ":", "(", "{", "=", ",", "[[", "while"] {
             let shown = format!("`{}`", terminal.trim_end_matches('0'));
             // Among operators `=` and `(` are possible but hardly ever what was forgotten.
             let unlikely = operators && matches!(terminal, "=" | "(" | "[[");
@@ -337,8 +265,7 @@ impl Failure {
         let text = shortened(&sources.text(self.span));
         match self.found {
             Found::Sym(symbol)
-                if symbol.text().starts_with(|c: char| c.is_ascii_alphabetic())
-                    && Sym::keyword(&text).is_some() =>
+                if symbol.text().starts_with(|c: char| c.is_ascii_alphabetic()) && Sym::keyword(&text).is_some() =>
             {
                 format!("the keyword `{text}`")
             }
@@ -355,7 +282,9 @@ impl Failure {
             }
             Found::Sym(Sym::Struct) if statement => "declare structs outside of functions".into(),
             Found::Sym(Sym::Else) => "an `else` must directly follow the statement of its `if`".into(),
-            Found::Sym(Sym::Assign) if self.has("*") => "only a variable, an element or a field can be assigned to; compare with `==`".into(),
+            Found::Sym(Sym::Assign) if self.has("*") => {
+                "only a variable, an element or a field can be assigned to; compare with `==`".into()
+            }
             Found::Sym(_) if self.has("name") && !self.has("int literal") && Sym::keyword(&text).is_some() => {
                 format!("`{text}` is a keyword and cannot be a name: choose another one")
             }
@@ -392,14 +321,9 @@ fn never_closed(open: Unclosed) -> Diagnostic {
 pub fn check_structs(items: &[Item], sources: &Sources, diagnostics: &mut Diagnostics) {
     for item in items {
         let Item::Struct(decl) = item else { continue };
-        let next = (decl.span.last + 1..)
-            .map_while(|i| sources.token(i))
-            .find(|t| !t.aside);
+        let next = (decl.span.last + 1..).map_while(|i| sources.token(i)).find(|t| !t.aside);
         if next.is_none_or(|t| sources.spelling(t.place) != ";") {
-            let span = Span {
-                first: decl.span.last,
-                last: decl.span.last,
-            };
+            let span = Span { first: decl.span.last, last: decl.span.last };
             diagnostics.push(
                 Diagnostic::error("E0302", span, "missing `;` after `}`")
                     .label("add `;` here")
@@ -411,9 +335,7 @@ pub fn check_structs(items: &[Item], sources: &Sources, diagnostics: &mut Diagno
 
 /// The token of the program before another one.
 fn previous(index: u32, sources: &Sources) -> Option<u32> {
-    (0..index)
-        .rev()
-        .find(|i| sources.token(*i).is_some_and(|t| !t.aside))
+    (0..index).rev().find(|i| sources.token(*i).is_some_and(|t| !t.aside))
 }
 
 /// The first line of a text, and not much of that.

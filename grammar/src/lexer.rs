@@ -14,18 +14,8 @@ use crate::token::{Sym, Token, shader_kind};
 pub type Spanned<'s> = (u32, Token<'s>, u32);
 
 /// Lexes everything.
-pub fn lex<'s>(
-    tokens: &[(PpToken, u32)],
-    sources: &'s Sources,
-    diagnostics: &mut Diagnostics,
-) -> Vec<Spanned<'s>> {
-    let mut lexer = Lexer {
-        sources,
-        tokens,
-        at: 0,
-        out: Vec::with_capacity(tokens.len()),
-        diagnostics,
-    };
+pub fn lex<'s>(tokens: &[(PpToken, u32)], sources: &'s Sources, diagnostics: &mut Diagnostics) -> Vec<Spanned<'s>> {
+    let mut lexer = Lexer { sources, tokens, at: 0, out: Vec::with_capacity(tokens.len()), diagnostics };
     while lexer.at < tokens.len() {
         lexer.step();
     }
@@ -47,10 +37,7 @@ impl<'s> Lexer<'s, '_> {
             return self.strings();
         }
         self.at += 1;
-        let span = Span {
-            first: index,
-            last: index,
-        };
+        let span = Span { first: index, last: index };
         let terminal = match token.kind {
             Kind::Name => self.word(token, span),
             Kind::Number => Some(self.number(token, span)),
@@ -75,12 +62,7 @@ impl<'s> Lexer<'s, '_> {
         let first = self.tokens[self.at].1;
         let mut last = first;
         let mut value = String::new();
-        while let Some((token, index)) = self
-            .tokens
-            .get(self.at)
-            .copied()
-            .filter(|(t, _)| t.kind == Kind::Text)
-        {
+        while let Some((token, index)) = self.tokens.get(self.at).copied().filter(|(t, _)| t.kind == Kind::Text) {
             let text = self.text(token);
             let inner = text.get(1..text.len() - 1).unwrap_or("");
             value.push_str(&self.unescaped(inner, index));
@@ -93,18 +75,11 @@ impl<'s> Lexer<'s, '_> {
     fn unescaped(&mut self, inner: &str, index: u32) -> String {
         literal::string(inner, |start, end| {
             let escape = &inner[start..end];
-            let span = Span {
-                first: index,
-                last: index,
-            };
+            let span = Span { first: index, last: index };
             self.diagnostics.push(
-                Diagnostic::warning(
-                    "W0203",
-                    span,
-                    format!("`{escape}` is not an escape sequence"),
-                )
-                .label("the backslash is dropped")
-                .help("write `\\\\` for a backslash"),
+                Diagnostic::warning("W0203", span, format!("`{escape}` is not an escape sequence"))
+                    .label("the backslash is dropped")
+                    .help("write `\\\\` for a backslash"),
             );
         })
     }
@@ -129,11 +104,7 @@ impl<'s> Lexer<'s, '_> {
             _ => "outside of strings and comments only ASCII is allowed",
         };
         let message = format!("`{}` has no meaning in OSL", text.escape_debug());
-        self.diagnostics.push(
-            Diagnostic::error("E0201", span, message)
-                .label("not expected anywhere")
-                .help(help),
-        );
+        self.diagnostics.push(Diagnostic::error("E0201", span, message).label("not expected anywhere").help(help));
         Token::Error
     }
 
@@ -146,13 +117,9 @@ impl<'s> Lexer<'s, '_> {
                 let negated = matches!(self.out.last(), Some((_, Token::Sym(Sym::Minus), _)));
                 if !negated {
                     self.diagnostics.push(
-                        Diagnostic::warning(
-                            "W0201",
-                            span,
-                            format!("{text} is too large for an int"),
-                        )
-                        .label(format!("becomes {value}"))
-                        .help("write it in hexadecimal if the bits are meant, or as a float"),
+                        Diagnostic::warning("W0201", span, format!("{text} is too large for an int"))
+                            .label(format!("becomes {value}"))
+                            .help("write it in hexadecimal if the bits are meant, or as a float"),
                     );
                 }
                 Token::Int(value)
@@ -180,25 +147,12 @@ impl<'s> Lexer<'s, '_> {
     fn malformed(&mut self, text: &'s str, span: Span) -> Token<'s> {
         let plain = text.trim_end_matches(['f', 'F']);
         let (help, guess) = match (literal::number(plain), text.len() > plain.len()) {
-            (Number::Float(v), true) => (
-                format!("OSL has no suffix `f`: write `{plain}`"),
-                Token::Float(v),
-            ),
-            (Number::Int(v), true) => (
-                format!("OSL has no suffix `f`: write `{plain}.0`"),
-                Token::Float(v as f32),
-            ),
-            _ => (
-                "numbers look like 12, 0x1f, 1.5, .5 or 1e-3; names do not start with a digit"
-                    .into(),
-                Token::Int(0),
-            ),
+            (Number::Float(v), true) => (format!("OSL has no suffix `f`: write `{plain}`"), Token::Float(v)),
+            (Number::Int(v), true) => (format!("OSL has no suffix `f`: write `{plain}.0`"), Token::Float(v as f32)),
+            _ => ("numbers look like 12, 0x1f, 1.5, .5 or 1e-3; names do not start with a digit".into(), Token::Int(0)),
         };
-        self.diagnostics.push(
-            Diagnostic::error("E0203", span, format!("`{text}` is not a number"))
-                .label("malformed")
-                .help(help),
-        );
+        self.diagnostics
+            .push(Diagnostic::error("E0203", span, format!("`{text}` is not a number")).label("malformed").help(help));
         guess
     }
 
@@ -209,16 +163,9 @@ impl<'s> Lexer<'s, '_> {
             return Some(Token::Sym(keyword));
         }
         if let Some(kind) = shader_kind(text) {
-            let named = self
-                .tokens
-                .get(self.at)
-                .is_some_and(|(t, _)| t.kind == Kind::Name);
+            let named = self.tokens.get(self.at).is_some_and(|(t, _)| t.kind == Kind::Name);
             let free = !matches!(self.out.last(), Some((_, Token::Sym(Sym::Struct), _)));
-            return Some(if named && free {
-                Token::Kind(kind)
-            } else {
-                Token::Ident(text)
-            });
+            return Some(if named && free { Token::Kind(kind) } else { Token::Ident(text) });
         }
         let Some((meant, help)) = reserved(text) else {
             return Some(Token::Ident(text));
@@ -247,39 +194,18 @@ enum Meant {
 
 fn reserved(word: &str) -> Option<(Meant, &'static str)> {
     Some(match word {
-        "bool" => (
-            Meant::Symbol(Sym::IntType),
-            "write `int`; conditions are 0 or 1",
-        ),
-        "char" | "enum" | "long" | "short" | "signed" | "unsigned" => (
-            Meant::Symbol(Sym::IntType),
-            "the only integer type is `int`",
-        ),
-        "double" => (
-            Meant::Symbol(Sym::FloatType),
-            "the only floating-point type is `float`",
-        ),
-        "true" => (
-            Meant::Int(1),
-            "write `1`, or put `#define true 1` at the top",
-        ),
-        "false" => (
-            Meant::Int(0),
-            "write `0`, or put `#define false 0` at the top",
-        ),
-        "const" | "extern" | "friend" | "inline" | "private" | "protected" | "public"
-        | "static" | "uniform" | "varying" | "virtual" => (Meant::Nothing, "leave it out"),
-        "class" | "union" | "typedef" | "template" => {
-            (Meant::Name, "the only types to declare are `struct`s")
+        "bool" => (Meant::Symbol(Sym::IntType), "write `int`; conditions are 0 or 1"),
+        "char" | "enum" | "long" | "short" | "signed" | "unsigned" => {
+            (Meant::Symbol(Sym::IntType), "the only integer type is `int`")
         }
-        "switch" | "case" | "default" => (
-            Meant::Name,
-            "write `if … else if …`; otherwise choose another name",
-        ),
-        "illuminance" | "illuminate" => (
-            Meant::Name,
-            "light is gathered by the renderer: return closures in `Ci`",
-        ),
+        "double" => (Meant::Symbol(Sym::FloatType), "the only floating-point type is `float`"),
+        "true" => (Meant::Int(1), "write `1`, or put `#define true 1` at the top"),
+        "false" => (Meant::Int(0), "write `0`, or put `#define false 0` at the top"),
+        "const" | "extern" | "friend" | "inline" | "private" | "protected" | "public" | "static" | "uniform"
+        | "varying" | "virtual" => (Meant::Nothing, "leave it out"),
+        "class" | "union" | "typedef" | "template" => (Meant::Name, "the only types to declare are `struct`s"),
+        "switch" | "case" | "default" => (Meant::Name, "write `if … else if …`; otherwise choose another name"),
+        "illuminance" | "illuminate" => (Meant::Name, "light is gathered by the renderer: return closures in `Ci`"),
         "sizeof" => (Meant::Name, "`arraylength(a)` gives the length of an array"),
         "this" => (Meant::Name, "choose another name"),
         _ => return None,

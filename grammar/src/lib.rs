@@ -77,20 +77,12 @@ pub fn parse(name: &str, text: &str, options: &Options) -> Parsed {
     let sources = done.table.finish();
     let mut diagnostics = done.diagnostics;
     if done.stopped {
-        return Parsed {
-            file: ast::File::default(),
-            sources,
-            diagnostics,
-        };
+        return Parsed { file: ast::File::default(), sources, diagnostics };
     }
     let mut tokens = lexer::lex(&done.tokens, &sources, &mut diagnostics);
     if let Some(message) = brackets::too_deep(&tokens) {
         diagnostics.push(message);
-        return Parsed {
-            file: ast::File::default(),
-            sources,
-            diagnostics,
-        };
+        return Parsed { file: ast::File::default(), sources, diagnostics };
     }
     let unclosed = brackets::mark_items(&mut tokens, &sources);
     let mut context = tree::Context::default();
@@ -102,13 +94,7 @@ pub fn parse(name: &str, text: &str, options: &Options) -> Parsed {
     explain::explain(&context.failures, &unclosed, &sources, &mut diagnostics);
     explain::check_structs(&context.items, &sources, &mut diagnostics);
     diagnostics.list.sort_by_key(|d| d.span.first);
-    Parsed {
-        file: ast::File {
-            items: context.items,
-        },
-        sources,
-        diagnostics,
-    }
+    Parsed { file: ast::File { items: context.items }, sources, diagnostics }
 }
 
 /// Parses the bytes of a file: UTF-8, or Latin-1 inside strings and comments.
@@ -133,8 +119,5 @@ fn not_text(name: &str) -> Parsed {
         Diagnostic::error("E0105", Span::NONE, format!("{name} is not a text file"))
             .help("give the source of a shader, not a compiled one or an image"),
     );
-    Parsed {
-        diagnostics,
-        ..Parsed::default()
-    }
+    Parsed { diagnostics, ..Parsed::default() }
 }

@@ -22,9 +22,7 @@ pub fn number(text: &str) -> Number {
     if let Some(hex) = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         return match u64::from_str_radix(hex, 16) {
             Ok(value) => u32::try_from(value).map_or(Number::TooLarge, |v| Number::Int(v as i32)),
-            Err(_) if !hex.is_empty() && hex.bytes().all(|b| b.is_ascii_hexdigit()) => {
-                Number::TooLarge
-            }
+            Err(_) if !hex.is_empty() && hex.bytes().all(|b| b.is_ascii_hexdigit()) => Number::TooLarge,
             Err(_) => Number::Malformed,
         };
     }
@@ -35,9 +33,7 @@ pub fn number(text: &str) -> Number {
             _ => Number::TooLarge,
         };
     }
-    let plain = text
-        .bytes()
-        .all(|b| b.is_ascii_digit() || b".eE+-".contains(&b));
+    let plain = text.bytes().all(|b| b.is_ascii_digit() || b".eE+-".contains(&b));
     match text.parse::<f32>() {
         Ok(value) if plain && value.is_infinite() => Number::Infinite(value),
         Ok(value) if plain => Number::Float(value),
@@ -69,9 +65,7 @@ pub fn string(text: &str, mut unknown: impl FnMut(usize, usize)) -> String {
             '\n' => {}
             '\r' => drop(chars.next_if(|(_, c)| *c == '\n')),
             '0'..='7' => out.push(code(&mut chars, c.to_digit(8).unwrap_or(0), 8, 2)),
-            'x' if chars.peek().is_some_and(|(_, c)| c.is_ascii_hexdigit()) => {
-                out.push(code(&mut chars, 0, 16, 2))
-            }
+            'x' if chars.peek().is_some_and(|(_, c)| c.is_ascii_hexdigit()) => out.push(code(&mut chars, 0, 16, 2)),
             _ => {
                 unknown(start, at + c.len_utf8());
                 out.push(c);
@@ -82,12 +76,7 @@ pub fn string(text: &str, mut unknown: impl FnMut(usize, usize)) -> String {
 }
 
 /// A character by its number: at most `most` more digits.
-fn code(
-    chars: &mut std::iter::Peekable<std::str::CharIndices<'_>>,
-    first: u32,
-    radix: u32,
-    most: usize,
-) -> char {
+fn code(chars: &mut std::iter::Peekable<std::str::CharIndices<'_>>, first: u32, radix: u32, most: usize) -> char {
     let mut value = first;
     for _ in 0..most {
         let Some((_, digit)) = chars.next_if(|(_, c)| c.is_digit(radix)) else {

@@ -44,10 +44,7 @@ impl Sources {
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        out.push_str(&format!(
-            "{severity}: {}\n",
-            diagnostic.message.replace('\n', " ")
-        ));
+        out.push_str(&format!("{severity}: {}\n", diagnostic.message.replace('\n', " ")));
     }
 
     fn render_full(&self, diagnostic: &Diagnostic, color: bool, out: &mut String) {
@@ -55,23 +52,13 @@ impl Sources {
             Severity::Error => shown::Severity::Error,
             Severity::Warning => shown::Severity::Warning,
         };
-        let mut message = shown::Diagnostic::new(severity)
-            .with_code(diagnostic.code)
-            .with_message(&diagnostic.message);
-        message.labels.extend(self.labels(
-            diagnostic.span,
-            &diagnostic.label,
-            shown::LabelStyle::Primary,
-        ));
+        let mut message = shown::Diagnostic::new(severity).with_code(diagnostic.code).with_message(&diagnostic.message);
+        message.labels.extend(self.labels(diagnostic.span, &diagnostic.label, shown::LabelStyle::Primary));
         for (span, remark) in &diagnostic.secondary {
-            message
-                .labels
-                .extend(self.labels(*span, remark, shown::LabelStyle::Secondary));
+            message.labels.extend(self.labels(*span, remark, shown::LabelStyle::Secondary));
         }
         message.notes.extend(self.includes(diagnostic.span));
-        message
-            .notes
-            .extend(diagnostic.help.iter().map(|help| format!("help: {help}")));
+        message.notes.extend(diagnostic.help.iter().map(|help| format!("help: {help}")));
         if let Some(place) = self.place(diagnostic.span)
             && let Some(excerpt) = Excerpt::of_long_line(self, place)
         {
@@ -111,8 +98,7 @@ impl Sources {
             return Vec::new();
         };
         let range = place.start as usize..place.end as usize;
-        let mut labels =
-            vec![shown::Label::new(style, place.file as usize, range).with_message(text)];
+        let mut labels = vec![shown::Label::new(style, place.file as usize, range).with_message(text)];
         let Some(token) = self.token(span.first) else {
             return labels;
         };
@@ -133,25 +119,17 @@ impl Sources {
 
     /// The place of a span in the user's text.
     fn place(&self, span: Span) -> Option<Place> {
-        let outermost = |index| {
-            self.token(index)
-                .map(|t| self.table.outermost(t.place, t.call))
-        };
+        let outermost = |index| self.token(index).map(|t| self.table.outermost(t.place, t.call));
         let first = outermost(span.first)?;
         let last = outermost(span.last).unwrap_or(first);
         let joined = last.file == first.file && last.end >= first.end;
-        Some(Place {
-            end: if joined { last.end } else { first.end },
-            ..first
-        })
+        Some(Place { end: if joined { last.end } else { first.end }, ..first })
     }
 
     /// One note for each `#include` that led to the file of a span.
     fn includes(&self, span: Span) -> Vec<String> {
         let mut notes = Vec::new();
-        let mut from = self
-            .place(span)
-            .and_then(|p| self.table.files[p.file as usize].included_from);
+        let mut from = self.place(span).and_then(|p| self.table.files[p.file as usize].included_from);
         while let Some(place) = from {
             let at = self.location(place);
             notes.push(format!("included from {}:{}", at.file, at.line));
@@ -202,10 +180,7 @@ impl Excerpt {
 
 /// The last place at or before a byte where a character starts.
 fn boundary(text: &str, byte: usize) -> usize {
-    (0..=byte)
-        .rev()
-        .find(|b| text.is_char_boundary(*b))
-        .unwrap_or(0)
+    (0..=byte).rev().find(|b| text.is_char_boundary(*b)).unwrap_or(0)
 }
 
 impl<'a> Files<'a> for Excerpt {
@@ -245,35 +220,20 @@ impl<'a> Files<'a> for Sources {
     type Source = &'a str;
 
     fn name(&'a self, id: usize) -> Result<&'a str, Error> {
-        self.table
-            .files
-            .get(id)
-            .map(|f| &*f.name)
-            .ok_or(Error::FileMissing)
+        self.table.files.get(id).map(|f| &*f.name).ok_or(Error::FileMissing)
     }
 
     fn source(&'a self, id: usize) -> Result<&'a str, Error> {
-        self.table
-            .files
-            .get(id)
-            .map(|f| &*f.text)
-            .ok_or(Error::FileMissing)
+        self.table.files.get(id).map(|f| &*f.text).ok_or(Error::FileMissing)
     }
 
     fn line_index(&'a self, id: usize, byte_index: usize) -> Result<usize, Error> {
-        self.table
-            .files
-            .get(id)
-            .map(|f| f.line(byte_index as u32))
-            .ok_or(Error::FileMissing)
+        self.table.files.get(id).map(|f| f.line(byte_index as u32)).ok_or(Error::FileMissing)
     }
 
     fn line_range(&'a self, id: usize, line_index: usize) -> Result<Range<usize>, Error> {
         let file = self.table.files.get(id).ok_or(Error::FileMissing)?;
         let max = file.line_starts.len().saturating_sub(1);
-        file.line_range(line_index).ok_or(Error::LineTooLarge {
-            given: line_index,
-            max,
-        })
+        file.line_range(line_index).ok_or(Error::LineTooLarge { given: line_index, max })
     }
 }

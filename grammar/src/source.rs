@@ -41,18 +41,9 @@ pub struct SourceFile {
 impl SourceFile {
     /// A file and its line table.
     pub fn new(name: &str, text: Arc<str>, included_from: Option<Place>) -> Self {
-        let after = text
-            .bytes()
-            .enumerate()
-            .filter(|(_, b)| *b == b'\n')
-            .map(|(i, _)| i as u32 + 1);
+        let after = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i as u32 + 1);
         let line_starts = std::iter::once(0).chain(after).collect();
-        SourceFile {
-            name: name.into(),
-            text,
-            line_starts,
-            included_from,
-        }
+        SourceFile { name: name.into(), text, line_starts, included_from }
     }
 
     /// The line of a byte, counted from 0.
@@ -63,10 +54,7 @@ impl SourceFile {
     /// The bytes of a line, its newline included.
     pub fn line_range(&self, line: usize) -> Option<std::ops::Range<usize>> {
         let start = *self.line_starts.get(line)? as usize;
-        let end = self
-            .line_starts
-            .get(line + 1)
-            .map_or(self.text.len(), |next| *next as usize);
+        let end = self.line_starts.get(line + 1).map_or(self.text.len(), |next| *next as usize);
         Some(start..end)
     }
 }
@@ -119,23 +107,13 @@ impl SourceTable {
     /// A table with nothing but the scratch file.
     pub fn new() -> Self {
         let scratch = SourceFile::new("<made by macros>", Arc::from(""), None);
-        SourceTable {
-            files: vec![scratch],
-            expanded: Vec::new(),
-            calls: Vec::new(),
-            scratch: String::new(),
-        }
+        SourceTable { files: vec![scratch], expanded: Vec::new(), calls: Vec::new(), scratch: String::new() }
     }
 
     /// The text of a place.
     pub fn text(&self, place: Place) -> &str {
-        let text = if place.file == SCRATCH {
-            &self.scratch
-        } else {
-            &*self.files[place.file as usize].text
-        };
-        text.get(place.start as usize..place.end as usize)
-            .unwrap_or("")
+        let text = if place.file == SCRATCH { &self.scratch } else { &*self.files[place.file as usize].text };
+        text.get(place.start as usize..place.end as usize).unwrap_or("")
     }
 
     /// Puts made-up text into the scratch file.
@@ -143,26 +121,14 @@ impl SourceTable {
         let start = self.scratch.len() as u32;
         self.scratch.push_str(text);
         self.scratch.push('\n');
-        Place {
-            file: SCRATCH,
-            start,
-            end: start + text.len() as u32,
-        }
+        Place { file: SCRATCH, start, end: start + text.len() as u32 }
     }
 
     /// A span for a place that no token of the program has.
     pub fn aside(&mut self, place: Place, call: u32) -> Span {
         let index = self.expanded.len() as u32;
-        self.expanded.push(Expanded {
-            place,
-            call,
-            space: true,
-            aside: true,
-        });
-        Span {
-            first: index,
-            last: index,
-        }
+        self.expanded.push(Expanded { place, call, space: true, aside: true });
+        Span { first: index, last: index }
     }
 
     /// The place in the user's text: that of the outermost macro call.
@@ -177,9 +143,7 @@ impl SourceTable {
     pub fn finish(mut self) -> Sources {
         let text = Arc::from(std::mem::take(&mut self.scratch));
         self.files[SCRATCH as usize] = SourceFile::new("<made by macros>", text, None);
-        Sources {
-            table: Arc::new(self),
-        }
+        Sources { table: Arc::new(self) }
     }
 }
 
@@ -229,8 +193,7 @@ impl Sources {
     /// The text of a place.
     pub(crate) fn spelling(&self, place: Place) -> &str {
         let text = &self.table.files[place.file as usize].text;
-        text.get(place.start as usize..place.end as usize)
-            .unwrap_or("")
+        text.get(place.start as usize..place.end as usize).unwrap_or("")
     }
 
     /// File, line and column of a place.
@@ -238,14 +201,7 @@ impl Sources {
         let file = &self.table.files[place.file as usize];
         let line = file.line(place.start);
         let start = file.line_starts[line] as usize;
-        let column = file
-            .text
-            .get(start..place.start as usize)
-            .map_or(0, |s| s.chars().count());
-        Location {
-            file: file.name.to_string(),
-            line: line as u32 + 1,
-            column: column as u32 + 1,
-        }
+        let column = file.text.get(start..place.start as usize).map_or(0, |s| s.chars().count());
+        Location { file: file.name.to_string(), line: line as u32 + 1, column: column as u32 + 1 }
     }
 }

@@ -14,10 +14,7 @@ pub struct Span {
 
 impl Span {
     /// A span that points nowhere (for what the compiler makes up itself).
-    pub const NONE: Span = Span {
-        first: u32::MAX,
-        last: u32::MAX,
-    };
+    pub const NONE: Span = Span { first: u32::MAX, last: u32::MAX };
 
     /// The smallest span that covers both.
     pub fn to(self, other: Span) -> Span {
@@ -27,9 +24,6 @@ impl Span {
         if other == Span::NONE {
             return self;
         }
-        Span {
-            first: self.first.min(other.first),
-            last: self.last.max(other.last),
-        }
+        Span { first: self.first.min(other.first), last: self.last.max(other.last) }
     }
 }

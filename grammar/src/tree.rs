@@ -34,11 +34,7 @@ impl Context {
                     .help("write `closure color`"),
             );
         }
-        TypeSpec {
-            closure: true,
-            base: TypeName::Color,
-            span,
-        }
+        TypeSpec { closure: true, base: TypeName::Color, span }
     }
 }
 
@@ -54,10 +50,7 @@ pub struct Declarator {
 
 /// The span from one token to another.
 pub fn span(first: u32, last: u32) -> Span {
-    Span {
-        first,
-        last: last.max(first),
-    }
+    Span { first, last: last.max(first) }
 }
 
 /// What stands between the parentheses of a `for`.
@@ -77,18 +70,12 @@ pub fn unboxed<T>(list: Vec<Box<T>>) -> Vec<T> {
 
 /// An expression from one token to another.
 pub fn expr(kind: ExprKind, first: u32, last: u32) -> Box<Expr> {
-    Box::new(Expr {
-        kind,
-        span: span(first, last),
-    })
+    Box::new(Expr { kind, span: span(first, last) })
 }
 
 /// A statement from one token to another.
 pub fn stmt(kind: StmtKind, first: u32, last: u32) -> Box<Stmt> {
-    Box::new(Stmt {
-        kind,
-        span: span(first, last),
-    })
+    Box::new(Stmt { kind, span: span(first, last) })
 }
 
 /// A function once its body is known.
@@ -99,14 +86,7 @@ pub fn function(mut head: Box<FunctionDecl>, body: Option<Vec<Stmt>>) -> Functio
 
 /// A formal parameter.
 pub fn param(output: bool, ty: TypeSpec, d: Declarator, metadata: Vec<Metadata>) -> Box<Param> {
-    Box::new(Param {
-        output,
-        ty,
-        name: d.name,
-        array: d.array,
-        default: d.init,
-        metadata,
-    })
+    Box::new(Param { output, ty, name: d.name, array: d.array, default: d.init, metadata })
 }
 
 /// Metadata before and after the formals, as one list.
@@ -120,56 +100,32 @@ pub fn joined(before: Option<Vec<Metadata>>, after: Option<Vec<Metadata>>) -> Ve
 pub fn declare(ty: TypeSpec, names: Vec<Box<Declarator>>) -> StmtKind {
     let declared = |d: Box<Declarator>| {
         let d = *d;
-        VarDecl {
-            ty: ty.clone(),
-            name: d.name,
-            array: d.array,
-            init: d.init,
-        }
+        VarDecl { ty: ty.clone(), name: d.name, array: d.array, init: d.init }
     };
     StmtKind::Declare(names.into_iter().map(declared).collect())
 }
 
 /// An `if`.
 pub fn branch(condition: Box<Expr>, then: Box<Stmt>, otherwise: Option<Box<Stmt>>) -> StmtKind {
-    StmtKind::If {
-        condition: *condition,
-        then,
-        otherwise,
-    }
+    StmtKind::If { condition: *condition, then, otherwise }
 }
 
 /// A `for`.
 pub fn for_loop(head: Box<ForHead>, body: Box<Stmt>) -> StmtKind {
-    let ForHead {
-        init,
-        condition,
-        step,
-    } = *head;
-    StmtKind::For {
-        init,
-        condition: condition.map(|e| *e),
-        step: step.map(|e| *e),
-        body,
-    }
+    let ForHead { init, condition, step } = *head;
+    StmtKind::For { init, condition: condition.map(|e| *e), step: step.map(|e| *e), body }
 }
 
 /// `a op b`
 pub fn binary(op: BinaryOp, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
     let span = a.span.to(b.span);
-    Box::new(Expr {
-        kind: ExprKind::Binary(op, a, b),
-        span,
-    })
+    Box::new(Expr { kind: ExprKind::Binary(op, a, b), span })
 }
 
 /// `a = b` and its kin.
 pub fn assign(op: Option<BinaryOp>, target: Box<Expr>, value: Box<Expr>) -> Box<Expr> {
     let span = target.span.to(value.span);
-    Box::new(Expr {
-        kind: ExprKind::Assign(op, target, value),
-        span,
-    })
+    Box::new(Expr { kind: ExprKind::Assign(op, target, value), span })
 }
 
 /// `op a`
@@ -187,38 +143,19 @@ pub fn cast(ty: TypeSpec, operand: Box<Expr>, first: u32) -> Box<Expr> {
 /// `++a` and `--a`
 pub fn step_before(increment: bool, target: Box<Expr>, first: u32) -> Box<Expr> {
     let last = target.span.last;
-    expr(
-        ExprKind::Step {
-            increment,
-            prefix: true,
-            target,
-        },
-        first,
-        last,
-    )
+    expr(ExprKind::Step { increment, prefix: true, target }, first, last)
 }
 
 /// `a++` and `a--`
 pub fn step_after(increment: bool, target: Box<Expr>, last: u32) -> Box<Expr> {
     let first = target.span.first;
-    expr(
-        ExprKind::Step {
-            increment,
-            prefix: false,
-            target,
-        },
-        first,
-        last,
-    )
+    expr(ExprKind::Step { increment, prefix: false, target }, first, last)
 }
 
 /// `c ? a : b`
 pub fn ternary(condition: Box<Expr>, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
     let span = condition.span.to(b.span);
-    Box::new(Expr {
-        kind: ExprKind::Ternary(condition, a, b),
-        span,
-    })
+    Box::new(Expr { kind: ExprKind::Ternary(condition, a, b), span })
 }
 
 /// `a, b, c`
@@ -227,10 +164,7 @@ pub fn comma(first: Box<Expr>, rest: Vec<Box<Expr>>) -> Box<Expr> {
     let mut all = Vec::with_capacity(rest.len() + 1);
     all.push(*first);
     all.extend(rest.into_iter().map(|e| *e));
-    Box::new(Expr {
-        kind: ExprKind::Comma(all),
-        span,
-    })
+    Box::new(Expr { kind: ExprKind::Comma(all), span })
 }
 
 /// `a[i]`
@@ -242,10 +176,7 @@ pub fn index(base: Box<Expr>, index: Box<Expr>, last: u32) -> Box<Expr> {
 /// `a.name`
 pub fn field(base: Box<Expr>, name: Ident) -> Box<Expr> {
     let span = base.span.to(name.span);
-    Box::new(Expr {
-        kind: ExprKind::Field(base, name),
-        span,
-    })
+    Box::new(Expr { kind: ExprKind::Field(base, name), span })
 }
 
 /// `(a)`: no node, but the span takes in the parentheses.

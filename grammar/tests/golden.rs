@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 use velour_grammar::{Format, Options, codes, parse, parse_bytes, print};
 
 fn cases(folder: &str) -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests")
-        .join(folder);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(folder);
     let mut paths: Vec<PathBuf> = std::fs::read_dir(root)
         .expect("the folder of cases")
         .map(|entry| entry.expect("an entry").path())
@@ -19,10 +17,7 @@ fn cases(folder: &str) -> Vec<PathBuf> {
 }
 
 fn short_name(path: &Path) -> String {
-    path.file_name()
-        .expect("a name")
-        .to_string_lossy()
-        .into_owned()
+    path.file_name().expect("a name").to_string_lossy().into_owned()
 }
 
 fn options() -> Options {
@@ -52,15 +47,9 @@ fn trees_print_as_expected() {
     for path in cases("syntax") {
         let text = std::fs::read_to_string(&path).expect("a case");
         let parsed = parse(&short_name(&path), &text, &Options::default());
-        let messages = parsed
-            .sources
-            .render(&parsed.diagnostics, Format::Short, false);
+        let messages = parsed.sources.render(&parsed.diagnostics, Format::Short, false);
         let printed = print::print(&parsed.file);
-        let out = if messages.is_empty() {
-            printed
-        } else {
-            format!("{messages}\n{printed}")
-        };
+        let out = if messages.is_empty() { printed } else { format!("{messages}\n{printed}") };
         expect_test::expect_file![path.with_extension("txt")].assert_eq(&out);
     }
 }
@@ -73,18 +62,9 @@ fn printed_trees_parse_back() {
         let first = parse(&name, &text, &Options::default());
         let printed = print::print(&first.file);
         let second = parse(&name, &printed, &Options::default());
-        let messages = second
-            .sources
-            .render(&second.diagnostics, Format::Full, false);
-        assert!(
-            !second.diagnostics.has_errors(),
-            "{name}: {messages}\n{printed}"
-        );
-        assert_eq!(
-            without_spans(&first.file),
-            without_spans(&second.file),
-            "{name}"
-        );
+        let messages = second.sources.render(&second.diagnostics, Format::Full, false);
+        assert!(!second.diagnostics.has_errors(), "{name}: {messages}\n{printed}");
+        assert_eq!(without_spans(&first.file), without_spans(&second.file), "{name}");
     }
 }
 
@@ -93,19 +73,10 @@ fn messages_are_as_expected() {
     for path in cases("errors") {
         let bytes = std::fs::read(&path).expect("a case");
         let parsed = parse_bytes(&short_name(&path), &bytes, &options());
-        assert!(
-            !parsed.diagnostics.is_empty(),
-            "{} has nothing to say",
-            path.display()
-        );
-        let short = parsed
-            .sources
-            .render(&parsed.diagnostics, Format::Short, false);
-        let full = parsed
-            .sources
-            .render(&parsed.diagnostics, Format::Full, false);
-        expect_test::expect_file![path.with_extension("txt")]
-            .assert_eq(&format!("{short}\n{full}"));
+        assert!(!parsed.diagnostics.is_empty(), "{} has nothing to say", path.display());
+        let short = parsed.sources.render(&parsed.diagnostics, Format::Short, false);
+        let full = parsed.sources.render(&parsed.diagnostics, Format::Full, false);
+        expect_test::expect_file![path.with_extension("txt")].assert_eq(&format!("{short}\n{full}"));
     }
 }
 
@@ -117,22 +88,13 @@ fn every_code_has_a_case() {
         let parsed = parse_bytes(&short_name(&path), &bytes, &options());
         seen.extend(parsed.diagnostics.list.iter().map(|d| d.code));
         for diagnostic in &parsed.diagnostics.list {
-            let known = codes::CODES
-                .iter()
-                .any(|(code, _)| *code == diagnostic.code);
+            let known = codes::CODES.iter().any(|(code, _)| *code == diagnostic.code);
             assert!(known, "{} is not in the table of codes", diagnostic.code);
-            let kind = if diagnostic.code.starts_with('W') {
-                "warning"
-            } else {
-                "error"
-            };
+            let kind = if diagnostic.code.starts_with('W') { "warning" } else { "error" };
             assert_eq!(format!("{:?}", diagnostic.severity).to_lowercase(), kind);
         }
     }
     for (code, meaning) in codes::CODES {
-        assert!(
-            seen.contains(code),
-            "no case in tests/errors gives {code}: {meaning}"
-        );
+        assert!(seen.contains(code), "no case in tests/errors gives {code}: {meaning}");
     }
 }

@@ -8,7 +8,7 @@ use super::convert::{assignable, is_number};
 use super::expr::nearest;
 use super::typed::{Argument, Expr, ExprKind, FunctionId};
 use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
-use crate::lang::closures::{ClosureId, ClosureSpec, ParamKind};
+use crate::lang::closures::{ClosureId, ClosureSpec, ParamKind, ParamSpec};
 use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{self, Ident};
 use velour_grammar::{Diagnostic, Severity, Span};
@@ -30,17 +30,25 @@ impl Checker<'_> {
                 let (given, wanted) = (args.len(), structure.fields.len());
                 let message = format!("`{}` is made of {wanted} parts, {given} are given", name.name);
                 let diagnostic = Diagnostic::error("E0510", span, message);
-                self.report(diagnostic.help("give all parts, or use an initialiser list `{ … }`, where missing parts are zero"));
+                self.report(
+                    diagnostic.help("give all parts, or use an initialiser list `{ … }`, where missing parts are zero"),
+                );
                 return Expr::error(span);
             }
             let list = ast::Expr { kind: ast::ExprKind::InitList(args.to_vec()), span };
             return self.check_initial(&list, &mut ty.clone());
         }
         let list = |arg: &ast::Expr| matches!(arg.kind, ast::ExprKind::InitList(_));
-        let values: Vec<Expr> = args
-            .iter()
-            .map(|arg| if list(arg) { Expr::new(ExprKind::Int(1), Type::VOID, arg.span) } else { self.check_expr(arg, None) })
-            .collect();
+        let values: Vec<Expr> =
+            args.iter()
+                .map(|arg| {
+                    if list(arg) {
+                        Expr::new(ExprKind::Int(1), Type::VOID, arg.span)
+                    } else {
+                        self.check_expr(arg, None)
+                    }
+                })
+                .collect();
         if values.iter().any(Expr::is_error) {
             return Expr::error(span);
         }
@@ -53,7 +61,9 @@ impl Checker<'_> {
             Some(Candidate::User(id)) => self.call_user(id, args, values, span),
             Some(Candidate::Builtin(name, signature)) => self.call_builtin(name, signature, args, values, span),
             Some(Candidate::Closure(id)) => self.call_closure(id, values, span),
-            None if self.diagnostics.list.last().is_some_and(|d| d.code == "E0413" && d.span == name.span) => Expr::error(span),
+            None if self.diagnostics.list.last().is_some_and(|d| d.code == "E0413" && d.span == name.span) => {
+                Expr::error(span)
+            }
             None => {
                 self.no_match(name, &candidates, &values, span);
                 Expr::error(span)
@@ -108,8 +118,16 @@ impl Checker<'_> {
     fn unknown_function(&mut self, name: &Ident) {
         if let Some(Symbol::Var(var)) = self.lookup(&name.name) {
             let declared = self.variables[var.0 as usize].span;
-            let diagnostic = Diagnostic::error("E0405", name.span, format!("`{}` is a variable, not a function", name.name));
+            let diagnostic =
+                Diagnostic::error("E0405", name.span, format!("`{}` is a variable, not a function", name.name));
             self.report(diagnostic.also(declared, "declared here").help("give the variable another name"));
+            return;
+        }
+        if crate::lang::closures::NOT_YET.contains(&name.name.as_str()) {
+            let diagnostic =
+                Diagnostic::error("E0412", name.span, format!("velour does not render `{}` yet", name.name));
+            let known: Vec<&str> = self.closures.specs.iter().map(|spec| spec.name).collect();
+            self.report(diagnostic.help(format!("its closures are {}", known.join(", "))));
             return;
         }
         let diagnostic = Diagnostic::error("E0405", name.span, format!("there is no function `{}`", name.name));
@@ -147,7 +165,8 @@ impl Checker<'_> {
         let tied = || best.iter().filter(|b| lists || matches!(b.2, Candidate::User(_)));
         if tied().count() > 1 {
             let undecided = best.iter().filter(|b| rank(b.2) == rank(&chosen)).count() > 1;
-            let fatal = undecided && (lists || self.returns_of(&chosen).structure().is_some()) || lists && expected.is_none();
+            let fatal =
+                undecided && (lists || self.returns_of(&chosen).structure().is_some()) || lists && expected.is_none();
             let spans: Vec<Span> = tied().filter_map(|b| self.span_of(b.2)).collect();
             self.ambiguous(name, &spans, fatal);
             if fatal {
@@ -270,7 +289,9 @@ impl Checker<'_> {
             self.report(diagnostic.help("compute the value in the shader, or pass it as a parameter"));
             return Expr::error(span);
         }
-        if let (true, Some(ExprKind::String(kind))) = (matches!(name, "noise" | "pnoise"), values.first().map(|v| &v.kind)) {
+        if let (true, Some(ExprKind::String(kind))) =
+            (matches!(name, "noise" | "pnoise"), values.first().map(|v| &v.kind))
+        {
             if !self.noise_exists(name, kind, values[0].span) {
                 return Expr::error(span);
             }
@@ -295,7 +316,8 @@ impl Checker<'_> {
         const NAMES: &[&str] = &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash"];
         let unable = name == "gabor" || (function == "pnoise" && name.contains("simplex"));
         if unable {
-            let diagnostic = Diagnostic::error("E0412", span, format!("velour does not run {function}(\"{name}\") yet"));
+            let diagnostic =
+                Diagnostic::error("E0412", span, format!("velour does not run {function}(\"{name}\") yet"));
             self.report(diagnostic.help("\"perlin\" is the nearest to it"));
         } else if !NAMES.contains(&name) {
             let diagnostic = Diagnostic::error("E0414", span, format!("there is no noise \"{name}\""));
@@ -309,6 +331,10 @@ impl Checker<'_> {
         let mut values = values.into_iter();
         let mut params = Vec::new();
         for (param, value) in spec.params.iter().zip(values.by_ref()) {
+            if let Some(message) = wrong_choice(param, &value) {
+                let diagnostic = Diagnostic::warning("W0503", value.span, message);
+                self.report(diagnostic.help(format!("the first choice, \"{}\", is taken", param.choices[0])));
+            }
             params.push(self.convert(value, &param_type(param.kind)));
         }
         let mut keywords = Vec::new();
@@ -320,10 +346,15 @@ impl Checker<'_> {
             let Some(at) = spec.keywords.iter().position(|keyword| keyword.name == word) else {
                 let names: Vec<String> = spec.keywords.iter().map(|keyword| format!("\"{}\"", keyword.name)).collect();
                 let message = format!("`{}` has no keyword parameter \"{word}\"", spec.name);
-                let known = if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
+                let known =
+                    if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
                 self.report(Diagnostic::error("E0411", token.span, message).help(known));
                 continue;
             };
+            if let Some(message) = wrong_choice(&spec.keywords[at], &value) {
+                let choices = spec.keywords[at].choices.join("\", \"");
+                self.report(Diagnostic::error("E0411", value.span, message).help(format!("choose \"{choices}\"")));
+            }
             let value = self.convert(value, &param_type(spec.keywords[at].kind));
             keywords.push((at as u32, value));
         }
@@ -370,6 +401,13 @@ impl Checker<'_> {
     }
 }
 
+/// What is wrong with a literal that is none of the strings a parameter may be.
+fn wrong_choice(param: &ParamSpec, value: &Expr) -> Option<String> {
+    let ExprKind::String(text) = &value.kind else { return None };
+    let known = param.choices.is_empty() || param.choices.contains(&text.as_str());
+    (!known).then(|| format!("\"{text}\" is no {} that velour knows", param.name))
+}
+
 /// The language's type of a closure parameter.
 pub(super) fn param_type(kind: ParamKind) -> Type {
     Type::of(match kind {
@@ -393,7 +431,7 @@ fn score_argument(formal: &Type, arg: &Expr) -> Option<u32> {
 }
 
 /// How well a value of type `actual` fits a formal of type `formal`.
-fn score_type(formal: &Type, actual: &Type) -> Option<u32> {
+pub(super) fn score_type(formal: &Type, actual: &Type) -> Option<u32> {
     if formal == actual {
         return Some(100);
     }

@@ -16,6 +16,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0412", "a part of the language that velour does not run yet"),
     ("E0413", "a call that fits several functions equally well"),
     ("E0414", "an unknown name of a noise"),
+    ("E0415", "functions that expand to too much"),
     ("E0501", "a value of the wrong type"),
     ("E0502", "an operator that does not take these types"),
     ("E0503", "an assignment to something that cannot be assigned"),
@@ -29,6 +30,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0511", "a format string that does not fit its arguments"),
     ("W0501", "a float stored in an int"),
     ("W0502", "an ambiguous call"),
+    ("W0503", "a string that is none of a closure's choices"),
     ("W0503", "an index outside its array"),
     ("W0504", "a function defined twice"),
 ];

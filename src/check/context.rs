@@ -22,6 +22,8 @@ pub(super) struct Signature {
     pub returns: Type,
     pub formals: Vec<(Type, bool)>,
     pub span: Span,
+    /// How much text the body is, in tokens.
+    pub size: u64,
     /// Called functions and where, to find recursion.
     pub calls: Vec<(FunctionId, Span)>,
 }
@@ -39,6 +41,8 @@ pub(super) struct Checker<'a> {
     /// What `return` gives here: `None` in a shader body.
     pub returns: Option<Type>,
     pub loops: u32,
+    /// True while the default of a shader parameter is checked.
+    pub in_params: bool,
     /// The function whose body is being checked.
     pub inside: Option<FunctionId>,
     /// Calls made by the shader body itself.
@@ -57,6 +61,7 @@ impl<'a> Checker<'a> {
             bodies: Vec::new(),
             returns: None,
             loops: 0,
+            in_params: false,
             inside: None,
             shader_calls: Vec::new(),
         };
@@ -127,6 +132,9 @@ impl<'a> Checker<'a> {
     /// Last checks on the whole; gives the shader when nothing is wrong.
     pub fn finish(mut self, shader: Option<Shader>) -> (Option<Shader>, Diagnostics) {
         self.find_undefined_and_recursive();
+        if let (Some(shader), false) = (&shader, self.diagnostics.has_errors()) {
+            self.limit_expansion(shader.span);
+        }
         if self.diagnostics.has_errors() {
             return (None, self.diagnostics);
         }
@@ -149,8 +157,36 @@ impl<'a> Checker<'a> {
         for start in 0..self.signatures.len() {
             self.visit(start, &mut state);
         }
-        for (callee, span) in std::mem::take(&mut self.shader_calls) {
+        for at in 0..self.shader_calls.len() {
+            let (callee, span) = self.shader_calls[at];
             self.require_body(callee, span);
+        }
+    }
+
+    /// Functions are expanded in place, so a few lines of calls within calls can grow without bound.
+    fn limit_expansion(&mut self, span: Span) {
+        const LIMIT: u64 = 4_000_000;
+        let mut sizes: Vec<Option<u64>> = vec![None; self.signatures.len()];
+        let mut open: Vec<usize> = (0..self.signatures.len()).collect();
+        while let Some(&at) = open.last() {
+            let signature = &self.signatures[at];
+            let waiting = signature.calls.iter().map(|call| call.0.0 as usize).find(|&callee| sizes[callee].is_none());
+            match waiting {
+                Some(callee) => open.push(callee),
+                None => {
+                    let inner = signature.calls.iter().filter_map(|call| sizes[call.0.0 as usize]);
+                    sizes[at] = Some(inner.fold(signature.size, u64::saturating_add));
+                    open.pop();
+                }
+            }
+        }
+        let whole = self.shader_calls.iter().filter_map(|call| sizes[call.0.0 as usize]);
+        if whole.fold(0, u64::saturating_add) > LIMIT {
+            let message =
+                "the shader is too large: functions are expanded in place, and here they call each other too often";
+            self.report(
+                Diagnostic::error("E0415", span, message).help("call a function in a loop instead of many times"),
+            );
         }
     }
 

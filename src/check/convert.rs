@@ -40,7 +40,8 @@ impl Checker<'_> {
             return expr;
         }
         let span = expr.span;
-        if matches!((&expr.kind, to.base()), (ExprKind::Int(0), Some(Base::Closure))) {
+        let null = matches!(expr.kind, ExprKind::Int(0)) || matches!(expr.kind, ExprKind::Float(zero) if zero == 0.0);
+        if null && to.base() == Some(Base::Closure) {
             return Expr::new(ExprKind::Convert(Box::new(expr)), to.clone(), span);
         }
         let narrowing = to.base() == Some(Base::Int) && expr.ty.base() == Some(Base::Float);

@@ -7,6 +7,9 @@ use std::sync::Arc;
 use velour_grammar::ast::{ArrayLen, FunctionDecl, Metadata, Param, ShaderDecl, StructDecl, TypeName, TypeSpec};
 use velour_grammar::{Diagnostic, Span};
 
+/// The most elements of one array. Every point of a batch has its own copy of an array.
+const MAX_ELEMENTS: i32 = 16_384;
+
 impl Checker<'_> {
     /// The type written, with its array brackets.
     pub fn resolve_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
@@ -40,6 +43,12 @@ impl Checker<'_> {
         match array {
             ArrayLen::Single => Length::Single,
             ArrayLen::Unsized => Length::Unsized,
+            ArrayLen::Sized(n) if n > MAX_ELEMENTS => {
+                let diagnostic =
+                    Diagnostic::error("E0507", span, format!("an array of {n} elements is too large for a shader"));
+                self.report(diagnostic.help(format!("{MAX_ELEMENTS} elements are the most")));
+                Length::Fixed(1)
+            }
             ArrayLen::Sized(n) if n > 0 => Length::Fixed(n as u32),
             ArrayLen::Sized(n) => {
                 self.error("E0507", span, format!("an array has at least one element, not {n}"));
@@ -76,11 +85,13 @@ impl Checker<'_> {
         if self.bodies[id.0 as usize].is_some() {
             id = self.replaced(id, decl);
         }
+        self.signatures[id.0 as usize].size = body_size(decl);
         let (saved_returns, saved_inside) = (self.returns.replace(returns.clone()), self.inside.replace(id));
         let saved_loops = std::mem::take(&mut self.loops);
         let (params, body) = self.scoped(|c| {
             let pairs = decl.params.iter().zip(&formals);
-            let bound = pairs.map(|(p, (ty, output))| (c.bind(&p.name.name, ty.clone(), p.name.span, *output), *output));
+            let bound =
+                pairs.map(|(p, (ty, output))| (c.bind(&p.name.name, ty.clone(), p.name.span, *output), *output));
             let params: Vec<(VarId, bool)> = bound.collect();
             (params, c.check_block(body))
         });
@@ -89,7 +100,8 @@ impl Checker<'_> {
         self.inside = saved_inside;
         if returns != Type::VOID && !returns_somewhere(&body) {
             let message = format!("`{}` returns a {returns}, but has no return statement", decl.name.name);
-            let diagnostic = Diagnostic::error("E0508", decl.name.span, message);
+            let diagnostic = Diagnostic::error("E0508", Span { first: decl.span.last, ..decl.span }, message)
+                .also(decl.name.span, "declared here");
             self.report(diagnostic.help("write `return value;`, or declare it `void`"));
         }
         let function = typed::Function { name: decl.name.name.clone(), returns, params, body };
@@ -99,13 +111,15 @@ impl Checker<'_> {
     /// A function that takes the place of one defined before; calls between the two keep the old one.
     fn replaced(&mut self, old: FunctionId, decl: &FunctionDecl) -> FunctionId {
         let before = &self.signatures[old.0 as usize];
-        let diagnostic = Diagnostic::warning("W0504", decl.name.span, format!("function `{}` is defined twice", before.name));
+        let diagnostic =
+            Diagnostic::warning("W0504", decl.name.span, format!("function `{}` is defined twice", before.name));
         let diagnostic = diagnostic.also(before.span, "defined here first");
         let signature = Signature {
             name: before.name.clone(),
             returns: before.returns.clone(),
             formals: before.formals.clone(),
             span: decl.span,
+            size: body_size(decl),
             calls: Vec::new(),
         };
         self.report(diagnostic.help("from here on the later one is called; remove one of them"));
@@ -145,6 +159,7 @@ impl Checker<'_> {
             returns: returns.clone(),
             formals: formals.to_vec(),
             span: decl.span,
+            size: body_size(decl),
             calls: Vec::new(),
         });
         self.bodies.push(None);
@@ -180,11 +195,14 @@ impl Checker<'_> {
         }
         let default = match &param.default {
             Some(value) => {
+                self.in_params = true;
                 let value = self.check_initial(value, &mut ty);
+                self.in_params = false;
                 Some(value)
             }
             None => {
-                let diagnostic = Diagnostic::error("E0408", name.span, format!("parameter `{}` has no default", name.name));
+                let diagnostic =
+                    Diagnostic::error("E0408", name.span, format!("parameter `{}` has no default", name.name));
                 self.report(diagnostic.help(format!("write `{} = …`", name.name)));
                 None
             }
@@ -202,6 +220,15 @@ impl Checker<'_> {
             out.push(typed::Metadata { ty, name: entry.name.name.clone(), value });
         }
         out
+    }
+}
+
+/// How much text the body of a function is, in tokens.
+fn body_size(decl: &FunctionDecl) -> u64 {
+    let body = decl.body.as_deref().unwrap_or_default();
+    match (body.first(), body.last()) {
+        (Some(first), Some(last)) => u64::from(last.span.last.saturating_sub(first.span.first)) + 1,
+        _ => 1,
     }
 }
 

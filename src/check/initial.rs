@@ -18,6 +18,12 @@ impl Checker<'_> {
             }
             return self.convert(value, ty);
         };
+        if items.is_empty() && !self.in_params {
+            let diagnostic =
+                Diagnostic::error("E0506", init.span, "only the default of a shader parameter may be an empty list");
+            self.report(diagnostic.help("write the values, or leave the variable without initialiser"));
+            return Expr::error(init.span);
+        }
         if ty.length == Length::Unsized {
             ty.length = Length::Fixed(items.len().max(1) as u32);
         }
@@ -78,7 +84,9 @@ impl Checker<'_> {
 pub(super) fn zero(ty: &Type) -> ExprKind {
     if let (false, Some(structure)) = (ty.is_array(), ty.structure()) {
         let span = velour_grammar::Span::NONE;
-        return ExprKind::Aggregate(structure.fields.iter().map(|(_, ty)| Expr::new(zero(ty), ty.clone(), span)).collect());
+        return ExprKind::Aggregate(
+            structure.fields.iter().map(|(_, ty)| Expr::new(zero(ty), ty.clone(), span)).collect(),
+        );
     }
     match ty.base() {
         Some(Base::Int) => ExprKind::Int(0),

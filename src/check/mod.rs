@@ -30,7 +30,8 @@ pub fn check(file: &File, closures: &ClosureTable) -> (Option<typed::Shader>, Di
             Item::Function(decl) => checker.declare_function(decl),
             Item::Shader(decl) => {
                 if let Some((_, first)) = &shader {
-                    let diagnostic = Diagnostic::error("E0401", decl.span, "a file holds one shader, this is the second");
+                    let diagnostic =
+                        Diagnostic::error("E0401", decl.span, "a file holds one shader, this is the second");
                     checker.report(diagnostic.also(*first, "the first one").help("move it to a file of its own"));
                 } else {
                     shader = Some((checker.declare_shader(decl), decl.span));

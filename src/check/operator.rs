@@ -1,14 +1,21 @@
 //! Operators and assignments.
 
+use super::call::score_type;
 use super::context::Checker;
 use super::convert::{equivalent, is_number, is_numeric};
-use super::typed::{Argument, Expr, ExprKind};
+use super::typed::{Argument, Expr, ExprKind, FunctionId};
 use crate::lang::types::{Base, Type};
 use velour_grammar::ast::{self, BinaryOp, UnaryOp};
 use velour_grammar::{Diagnostic, Span};
 
 impl Checker<'_> {
-    pub(super) fn check_unary(&mut self, op: UnaryOp, operand: &ast::Expr, expected: Option<&Type>, span: Span) -> Expr {
+    pub(super) fn check_unary(
+        &mut self,
+        op: UnaryOp,
+        operand: &ast::Expr,
+        expected: Option<&Type>,
+        span: Span,
+    ) -> Expr {
         let operand = self.check_expr(operand, if op == UnaryOp::Not { None } else { expected });
         if operand.is_error() {
             return operand;
@@ -104,19 +111,25 @@ impl Checker<'_> {
         if word.is_empty() {
             return None;
         }
-        let name = format!("__operator__{word}__");
-        for id in self.functions_named(&name) {
-            let signature = &self.signatures[id.0 as usize];
-            let fits = signature.formals.len() == operands.len()
-                && signature.formals.iter().zip(operands).all(|((ty, output), e)| *ty == e.ty && !output);
-            if fits {
-                let returns = signature.returns.clone();
-                self.note_call(id, span);
-                let args = operands.iter().map(|&e| Argument::In(e.clone())).collect();
-                return Some(Expr::new(ExprKind::Call(id, args), returns, span));
-            }
+        // Operators of the built-in types cannot be taken over.
+        if operands.iter().all(|e| e.ty.structure().is_none()) {
+            return None;
         }
-        None
+        let name = format!("__operator__{word}__");
+        let score = |id: &FunctionId| {
+            let formals = &self.signatures[id.0 as usize].formals;
+            let pairs = formals.iter().zip(operands).map(|((ty, output), e)| score_type(ty, &e.ty).filter(|_| !output));
+            let sum = pairs.sum::<Option<u32>>().filter(|_| formals.len() == operands.len());
+            sum.map(|sum| (sum, *id))
+        };
+        let found = self.functions_named(&name).iter().rev().filter_map(score).max_by_key(|(sum, _)| *sum);
+        let (_, id) = found?;
+        let signature = &self.signatures[id.0 as usize];
+        let (returns, formals) = (signature.returns.clone(), signature.formals.clone());
+        self.note_call(id, span);
+        let args = operands.iter().zip(&formals).map(|(&e, (ty, _))| Argument::In(self.convert(e.clone(), ty)));
+        let args = args.collect();
+        Some(Expr::new(ExprKind::Call(id, args), returns, span))
     }
 
     pub(super) fn check_assign(&mut self, target: &ast::Expr, value: &ast::Expr, span: Span) -> Expr {

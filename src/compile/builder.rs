@@ -1,7 +1,7 @@
 //! Building a group: layers, parameters, connections.
 
-use super::error::{GroupError, GroupSubject};
 use super::Shader;
+use super::error::{GroupError, GroupSubject};
 use crate::exec::{Group, Locate};
 use crate::ir::lower::value::SPANS_PER_LAYER;
 use crate::ir::lower::{Binding, Layer, LowerOptions, lower};
@@ -90,7 +90,11 @@ impl GroupBuilder {
         }
         let (given, wanted) = (find_type(&self.layers[source], from.1)?, find_type(&self.layers[target], to.1)?);
         if !connects(&given, &wanted) {
-            return Err(param_error(&self.layers[target], to.1, format!("a {given} cannot feed the {wanted} `{}`", to.1)));
+            return Err(param_error(
+                &self.layers[target],
+                to.1,
+                format!("a {given} cannot feed the {wanted} `{}`", to.1),
+            ));
         }
         self.layers[target].bindings.push((to.1.to_owned(), Binding::Connection(source, from.1.to_owned())));
         Ok(())
@@ -135,7 +139,11 @@ fn locator(sources: Vec<Sources>) -> Locate {
 fn param_error(layer: &Layer, name: &str, message: String) -> GroupError {
     let shader = &layer.shader;
     let names: Vec<&str> = shader.params.iter().map(|p| shader.variables[p.var.0 as usize].name.as_str()).collect();
-    let help = if names.is_empty() { "the shader has no parameters".to_owned() } else { format!("its parameters are {}", names.join(", ")) };
+    let help = if names.is_empty() {
+        "the shader has no parameters".to_owned()
+    } else {
+        format!("its parameters are {}", names.join(", "))
+    };
     let subject = GroupSubject::Param { layer: layer.name.clone(), name: name.to_owned() };
     GroupError { message, help, subject }
 }

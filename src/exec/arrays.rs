@@ -12,12 +12,17 @@ impl Run<'_> {
         if wanted >= 0 && (wanted as u32) < len {
             return wanted as usize;
         }
-        if self.mask[lane] != 0 {
+        if self.s.mask[lane] != 0 {
             let place = (self.group.locate)(span);
             let message = format!("{place}: error: index {wanted} is outside 0..{}", len.saturating_sub(1));
-            self.report_once(message);
+            self.report_once(lane, message);
         }
         (wanted.max(0) as usize).min(len.saturating_sub(1) as usize)
+    }
+
+    /// A lane that is here, to report what concerns all of them.
+    pub(super) fn first_active(&self) -> usize {
+        self.s.mask.iter().position(|&m| m != 0).unwrap_or(0)
     }
 
     pub(super) fn array_get(&mut self, dst: Reg, array: ArrayId, component: u32, index: Reg, span: Span) {
@@ -26,7 +31,18 @@ impl Run<'_> {
             return self.closure_array_get(dst, array, index, span);
         }
         let lanes = if info.uniform { 1 } else { self.n };
-        let out = if self.group.program.regs[dst.0 as usize].uniform { 1 } else { self.n };
+        let out = self.lanes_of(dst);
+        if self.regs.i(index).len() == 1 && out == lanes {
+            let element = self.checked(index, self.first_active(), info.len, span);
+            let at = (element * info.components as usize + component as usize) * lanes;
+            if info.kind == Kind::Float {
+                let source = &self.regs.float_arrays[array.0 as usize][at..at + lanes];
+                self.regs.floats[dst.0 as usize].copy_from_slice(source);
+            } else {
+                self.regs.ints[dst.0 as usize].copy_from_slice(&self.regs.int_arrays[array.0 as usize][at..at + lanes]);
+            }
+            return;
+        }
         for lane in 0..out {
             let element = self.checked(index, lane, info.len, span);
             let at = (element * info.components as usize + component as usize) * lanes + lane.min(lanes - 1);
@@ -52,7 +68,7 @@ impl Run<'_> {
         }
         let lanes = if info.uniform { 1 } else { self.n };
         for lane in 0..lanes {
-            if masked && self.mask[lane] == 0 {
+            if masked && self.s.mask[lane] == 0 {
                 continue;
             }
             let element = self.checked(index, lane, info.len, span);
@@ -95,7 +111,7 @@ impl Run<'_> {
         let new = self.closure(src);
         let elements: Vec<usize> = (0..self.n).map(|lane| self.checked(index, lane, info.len, span)).collect();
         for element in 0..info.len as usize {
-            let wanted = |lane: usize| elements[lane] == element && (!masked || self.mask[lane] != 0);
+            let wanted = |lane: usize| elements[lane] == element && (!masked || self.s.mask[lane] != 0);
             let mask: Vec<i32> = (0..self.n).map(|lane| wanted(lane) as i32).collect();
             if mask.contains(&1) {
                 let old = self.regs.closure_arrays[array.0 as usize][element];

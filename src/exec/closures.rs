@@ -13,12 +13,12 @@ impl Run<'_> {
         }
         // An input never changes within a batch, so closures that share `N` share its column, and say so by doing it.
         let input = matches!(self.group.program.regs[reg.0 as usize].source, Source::Input(_));
-        if let Some(&at) = self.shared.get(&reg).filter(|_| input) {
+        if let Some(&(_, at)) = self.s.shared.iter().find(|entry| input && entry.0 == reg) {
             return Floats::Varying(at);
         }
         let stored = self.tree.varying(column);
         if let (true, Floats::Varying(at)) = (input, stored) {
-            self.shared.insert(reg, at);
+            self.s.shared.push((reg, at));
         }
         stored
     }
@@ -46,16 +46,21 @@ impl Run<'_> {
     }
 
     pub(super) fn leaf(&mut self, dst: Reg, closure: ClosureId, params: &[Reg], keywords: &[(u32, Vec<Reg>)]) {
-        let table = self.group.table.clone();
-        let spec = table.get(closure);
+        let group = self.group;
+        let spec = group.table.get(closure);
         let mut rest = params;
-        let values: Vec<Param> = spec.params.iter().map(|param| self.param(param.kind, &mut rest)).collect();
-        let mut pairs = Vec::with_capacity(keywords.len());
+        self.s.params.clear();
+        self.s.keywords.clear();
+        for param in &spec.params {
+            let value = self.param(param.kind, &mut rest);
+            self.s.params.push(value);
+        }
         for (at, regs) in keywords {
             let mut regs = regs.as_slice();
-            pairs.push((*at, self.param(spec.keywords[*at as usize].kind, &mut regs)));
+            let value = self.param(spec.keywords[*at as usize].kind, &mut regs);
+            self.s.keywords.push((*at, value));
         }
-        self.regs.closures[dst.0 as usize] = Some(self.tree.leaf(closure, &values, &pairs));
+        self.regs.closures[dst.0 as usize] = Some(self.tree.leaf(closure, &self.s.params, &self.s.keywords));
     }
 
     pub(super) fn scale(&mut self, dst: Reg, a: Reg, weight: &[Reg; 3]) {
@@ -81,9 +86,9 @@ impl Run<'_> {
         let new = self.closure(src);
         let old = self.closure(dst);
         let value = if partial {
-            let mask = std::mem::take(&mut self.mask);
+            let mask = std::mem::take(&mut self.s.mask);
             let value = self.choose_closure(&mask, new, old);
-            self.mask = mask;
+            self.s.mask = mask;
             value
         } else {
             new

@@ -97,7 +97,8 @@ impl Group {
 
     /// Can it scatter light?
     pub fn can_scatter(&self) -> bool {
-        let other = |model: &Model| !matches!(model, Model::Emission | Model::Background | Model::Holdout | Model::Debug);
+        let other =
+            |model: &Model| !matches!(model, Model::Emission | Model::Background | Model::Holdout | Model::Debug);
         self.models.iter().any(other)
     }
 

@@ -18,6 +18,7 @@ pub struct Machine {
     tree: Tree,
     host: Arc<Host>,
     reports: Vec<Report>,
+    scratch: Scratch,
     /// Instructions a batch may run.
     pub budget: u64,
 }
@@ -35,6 +36,28 @@ pub(super) struct Registers {
     lanes: usize,
 }
 
+/// Memory that is used anew by every batch, so that a warm machine allocates nothing.
+#[derive(Default)]
+pub(super) struct Scratch {
+    pub mask: Vec<i32>,
+    left: Vec<Vec<i32>>,
+    spare: Vec<Vec<i32>>,
+    /// What each lane has printed so far.
+    pub texts: Vec<Vec<Report>>,
+    /// Mistakes that have been reported in this batch.
+    pub said: Vec<String>,
+    /// Offsets of input columns in the tree, once a closure has used them.
+    pub shared: Vec<(Reg, u32)>,
+    /// The parameters of the leaf that is being built.
+    pub params: Vec<crate::closure::tree::Param>,
+    /// Its keyword parameters.
+    pub keywords: Vec<crate::closure::tree::Keyword>,
+    /// Results of a routine in one lane.
+    pub ints: Vec<i32>,
+    /// Columns that a noise writes.
+    pub columns: Vec<Vec<f32>>,
+}
+
 /// One batch under way.
 pub(super) struct Run<'a> {
     pub group: &'a Group,
@@ -43,16 +66,12 @@ pub(super) struct Run<'a> {
     pub tree: &'a mut Tree,
     pub host: &'a Host,
     pub reports: &'a mut Vec<Report>,
-    /// What each lane has printed so far.
-    pub texts: Vec<Vec<Report>>,
+    pub s: Scratch,
     pub n: usize,
-    pub mask: Vec<i32>,
     pub active: usize,
-    left: Vec<Vec<i32>>,
     budget: u64,
-    /// Offset of an input's column in the tree, once a closure has used it.
-    pub shared: HashMap<Reg, u32>,
-    spare: Vec<Vec<i32>>,
+    /// True once the batch has been given up.
+    stopped: bool,
 }
 
 impl Default for Machine {
@@ -70,7 +89,7 @@ impl Machine {
     /// A machine whose shaders see the spaces and attributes of a host.
     pub fn with_host(host: Arc<Host>) -> Self {
         let (files, tree, reports) = (HashMap::new(), Tree::default(), Vec::new());
-        Machine { files, tree, host, reports, budget: DEFAULT_BUDGET }
+        Machine { files, tree, host, reports, scratch: Scratch::default(), budget: DEFAULT_BUDGET }
     }
 
     /// Runs a group over points and gives the closure tree of the batch. Further results stay readable through
@@ -90,17 +109,16 @@ impl Machine {
             tree: &mut self.tree,
             host: &self.host,
             reports: &mut self.reports,
-            texts: Vec::new(),
+            s: std::mem::take(&mut self.scratch),
             n,
-            mask: vec![1; n],
             active: n,
-            left: vec![Vec::new(); group.program.scopes as usize],
             budget: self.budget,
-            shared: HashMap::new(),
-            spare: Vec::new(),
+            stopped: false,
         };
+        run.s.begin(n, group.program.scopes as usize);
         run.block(&group.program.body);
         run.flush();
+        self.scratch = run.s;
         self.tree.root = group.program.result.and_then(|reg| regs.closures[reg.0 as usize]);
         &self.tree
     }
@@ -132,6 +150,16 @@ impl Machine {
             Kind::Float => regs.float_arrays[array.0 as usize].get(at).map_or(0.0, |&x| x as f64),
             _ => regs.int_arrays[array.0 as usize].get(at).map_or(0.0, |&x| x as f64),
         }
+    }
+}
+
+impl Scratch {
+    fn begin(&mut self, n: usize, scopes: usize) {
+        self.mask.clear();
+        self.mask.resize(n, 1);
+        self.left.resize_with(scopes.max(self.left.len()), Vec::new);
+        self.said.clear();
+        self.shared.clear();
     }
 }
 
@@ -217,7 +245,7 @@ impl Run<'_> {
                 Node::Scope(id, body) => self.scope(*id, body),
                 Node::Leave(id) => self.leave(*id),
             }
-            if self.active == 0 {
+            if self.active == 0 || self.stopped {
                 return;
             }
         }
@@ -228,7 +256,7 @@ impl Run<'_> {
     }
 
     fn spare(&mut self) -> Vec<i32> {
-        let mut mask = self.spare.pop().unwrap_or_default();
+        let mut mask = self.s.spare.pop().unwrap_or_default();
         mask.resize(self.n, 0);
         mask
     }
@@ -239,45 +267,45 @@ impl Run<'_> {
             return self.block(if taken { a } else { b });
         }
         let (mut yes, mut no) = (self.spare(), self.spare());
-        let yes_count = k::narrow(&mut yes, &self.mask, self.regs.i(condition), true);
-        let no_count = k::narrow(&mut no, &self.mask, self.regs.i(condition), false);
-        let outer = std::mem::replace(&mut self.mask, yes);
+        let yes_count = k::narrow(&mut yes, &self.s.mask, self.regs.i(condition), true);
+        let no_count = k::narrow(&mut no, &self.s.mask, self.regs.i(condition), false);
+        let outer = std::mem::replace(&mut self.s.mask, yes);
         self.active = yes_count;
         if yes_count > 0 {
             self.block(a);
         }
-        yes = std::mem::replace(&mut self.mask, no);
+        yes = std::mem::replace(&mut self.s.mask, no);
         let after_yes = self.active;
         self.active = no_count;
         if no_count > 0 {
             self.block(b);
         }
         // Lanes that left on either side stay away.
-        for (m, y) in self.mask.iter_mut().zip(&yes) {
+        for (m, y) in self.s.mask.iter_mut().zip(&yes) {
             *m |= y;
         }
         self.active += after_yes;
-        self.spare.extend([outer, yes]);
+        self.s.spare.extend([outer, yes]);
     }
 
     fn scope(&mut self, id: ScopeId, body: &Block) {
         let slot = id.0 as usize;
-        self.left[slot].clear();
+        self.s.left[slot].clear();
         self.block(body);
-        let left = std::mem::take(&mut self.left[slot]);
+        let left = std::mem::take(&mut self.s.left[slot]);
         if !left.is_empty() {
-            for (m, l) in self.mask.iter_mut().zip(&left) {
+            for (m, l) in self.s.mask.iter_mut().zip(&left) {
                 *m |= l;
             }
-            self.active = self.mask.iter().filter(|&&m| m != 0).count();
+            self.active = self.s.mask.iter().filter(|&&m| m != 0).count();
         }
-        self.left[slot] = left;
+        self.s.left[slot] = left;
     }
 
     fn leave(&mut self, id: ScopeId) {
-        let left = &mut self.left[id.0 as usize];
+        let left = &mut self.s.left[id.0 as usize];
         left.resize(self.n, 0);
-        for (l, m) in left.iter_mut().zip(&mut self.mask) {
+        for (l, m) in left.iter_mut().zip(&mut self.s.mask) {
             *l |= *m;
             *m = 0;
         }
@@ -289,7 +317,7 @@ impl Run<'_> {
         done.fill(0);
         loop {
             self.block(head);
-            if self.active == 0 {
+            if self.active == 0 || self.stopped {
                 break;
             }
             if self.uniform(condition) {
@@ -298,18 +326,18 @@ impl Run<'_> {
                 }
             } else {
                 let mut on = self.spare();
-                let count = k::narrow(&mut on, &self.mask, self.regs.i(condition), true);
-                for ((d, m), o) in done.iter_mut().zip(&self.mask).zip(&on) {
+                let count = k::narrow(&mut on, &self.s.mask, self.regs.i(condition), true);
+                for ((d, m), o) in done.iter_mut().zip(&self.s.mask).zip(&on) {
                     *d |= *m & !*o;
                 }
-                self.spare.push(std::mem::replace(&mut self.mask, on));
+                self.s.spare.push(std::mem::replace(&mut self.s.mask, on));
                 self.active = count;
                 if count == 0 {
                     break;
                 }
             }
             self.block(body);
-            if self.active == 0 {
+            if self.active == 0 || self.stopped {
                 break;
             }
             if !self.spend(8) {
@@ -317,11 +345,11 @@ impl Run<'_> {
                 break;
             }
         }
-        for (m, d) in self.mask.iter_mut().zip(&done) {
+        for (m, d) in self.s.mask.iter_mut().zip(&done) {
             *m |= d;
         }
-        self.active = self.mask.iter().filter(|&&m| m != 0).count();
-        self.spare.push(done);
+        self.active = self.s.mask.iter().filter(|&&m| m != 0).count();
+        self.s.spare.push(done);
     }
 
     /// Takes from the budget; false when it is used up.
@@ -334,6 +362,7 @@ impl Run<'_> {
         let place = (self.group.locate)(span);
         let message = format!("{place}: error: {what}: the batch has run as many instructions as it may");
         self.reports.push(Report::Fatal(message));
+        self.stopped = true;
     }
 
     fn instr(&mut self, instr: &Instr) {
@@ -399,7 +428,7 @@ impl Run<'_> {
             Kind::Float => fill!(self.floats[dst], |c| {
                 let src = self.regs.f(src);
                 if partial {
-                    k::masked_move(&mut c, &self.mask, src);
+                    k::masked_move(&mut c, &self.s.mask, src);
                 } else if src.len() == 1 {
                     c.fill(src[0]);
                 } else {
@@ -409,7 +438,7 @@ impl Run<'_> {
             _ => fill!(self.ints[dst], |c| {
                 let src = self.regs.i(src);
                 if partial {
-                    k::masked_move_int(&mut c, &self.mask, src);
+                    k::masked_move_int(&mut c, &self.s.mask, src);
                 } else if src.len() == 1 {
                     c.fill(src[0]);
                 } else {

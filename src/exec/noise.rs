@@ -125,8 +125,13 @@ fn hash(noise: Noise, out: &mut [Vec<f32>], x: &[Column]) {
 
 impl Run<'_> {
     pub(super) fn noise(&mut self, noise: Noise, dst: &[Reg], src: &[Reg]) {
-        let mut out: Vec<Vec<f32>> = dst.iter().map(|reg| std::mem::take(&mut self.regs.floats[reg.0 as usize])).collect();
-        let x: Vec<Column> = src.iter().map(|&reg| Column(self.regs.f(reg))).collect();
+        let mut out = std::mem::take(&mut self.s.columns);
+        out.extend(dst.iter().map(|reg| std::mem::take(&mut self.regs.floats[reg.0 as usize])));
+        // Four coordinates and their four periods at most.
+        let mut x = [Column(&[]); 8];
+        for (slot, &reg) in x.iter_mut().zip(src) {
+            *slot = Column(self.regs.f(reg));
+        }
         match noise.kind {
             NoiseKind::Perlin | NoiseKind::UPerlin => {
                 let bias = noise.kind == NoiseKind::UPerlin;
@@ -138,8 +143,9 @@ impl Run<'_> {
             NoiseKind::Cell => cell(noise, &mut out, &x),
             NoiseKind::Hash => hash(noise, &mut out, &x),
         }
-        for (reg, column) in dst.iter().zip(out) {
+        for (reg, column) in dst.iter().zip(out.drain(..)) {
             self.regs.floats[reg.0 as usize] = column;
         }
+        self.s.columns = out;
     }
 }

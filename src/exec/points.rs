@@ -11,8 +11,15 @@ use crate::math::columns::Column3;
 pub const MAX_LANES: usize = 128;
 
 /// Bits of [`Points::ray_type`], tested by `raytype("…")`.
-pub const RAY_TYPES: &[(&str, i32)] =
-    &[("camera", 1), ("shadow", 2), ("diffuse", 4), ("glossy", 8), ("reflection", 16), ("refraction", 32), ("displacement", 64)];
+pub const RAY_TYPES: &[(&str, i32)] = &[
+    ("camera", 1),
+    ("shadow", 2),
+    ("diffuse", 4),
+    ("glossy", 8),
+    ("reflection", 16),
+    ("refraction", 32),
+    ("displacement", 64),
+];
 
 /// Shading points, a column a quantity.
 #[derive(Clone, Debug, Default)]
@@ -87,12 +94,26 @@ impl Points {
     pub fn resize(&mut self, len: usize) {
         self.len = len;
         let triples = [
-            &mut self.p, &mut self.i, &mut self.n, &mut self.ng, &mut self.dpdu, &mut self.dpdv, &mut self.dpdx,
-            &mut self.dpdy, &mut self.didx, &mut self.didy,
+            &mut self.p,
+            &mut self.i,
+            &mut self.n,
+            &mut self.ng,
+            &mut self.dpdu,
+            &mut self.dpdv,
+            &mut self.dpdx,
+            &mut self.dpdy,
+            &mut self.didx,
+            &mut self.didy,
         ];
         triples.into_iter().for_each(|column| column.resize(len));
         let floats = [
-            &mut self.u, &mut self.v, &mut self.dudx, &mut self.dudy, &mut self.dvdx, &mut self.dvdy, &mut self.time,
+            &mut self.u,
+            &mut self.v,
+            &mut self.dudx,
+            &mut self.dudy,
+            &mut self.dvdx,
+            &mut self.dvdy,
+            &mut self.time,
             &mut self.surface_area,
         ];
         floats.into_iter().for_each(|column| column.resize(len, 0.0));

@@ -7,6 +7,7 @@ use crate::ir::op::*;
 use crate::ir::program::Reg;
 use crate::lang::symbols::Symbol;
 use crate::ops::color::{ColorSpace, blackbody, transformc, wavelength_color};
+use crate::ops::color_slope::transformc_slope;
 use crate::ops::spline::Basis;
 use crate::ops::{hash, matrix, pattern, spline, string};
 use velour_grammar::Span;
@@ -63,10 +64,12 @@ impl Run<'_> {
     fn each_lane(&mut self, routine: &Routine, dst: &[Reg], src: &[Reg]) {
         let Some(&first) = dst.first() else { return };
         let mut floats = [0.0f32; 16];
-        let mut ints = vec![0i32; dst.len()];
+        let mut ints = std::mem::take(&mut self.s.ints);
+        ints.clear();
+        ints.resize(dst.len(), 0);
         for lane in 0..self.lanes_of(first) {
             // Lanes that are not here may hold anything, which costs time in the slow routines.
-            if self.mask[lane] == 0 && self.active < self.n && self.lanes_of(first) > 1 {
+            if self.s.mask[lane] == 0 && self.active < self.n && self.lanes_of(first) > 1 {
                 continue;
             }
             let args = Lane { run: self, src, lane };
@@ -79,6 +82,7 @@ impl Run<'_> {
                 }
             }
         }
+        self.s.ints = ints;
     }
 
     fn space_matrix(&mut self, dst: &[Reg], src: &[Reg], span: Span) {
@@ -86,9 +90,9 @@ impl Run<'_> {
             let args = Lane { run: self, src, lane };
             let (from, to) = (args.s(0), args.s(1));
             let found = self.host.matrix(from, to);
-            if found.is_none() && self.mask[lane] != 0 {
+            if found.is_none() && self.s.mask[lane] != 0 {
                 let place = (self.group.locate)(span);
-                self.report_once(format!("{place}: error: there is no space \"{from}\" or no space \"{to}\""));
+                self.report_once(lane, format!("{place}: error: there is no space \"{from}\" or no space \"{to}\""));
             }
             let matrix = found.unwrap_or(matrix::IDENTITY);
             for (reg, value) in dst.iter().zip(matrix) {
@@ -104,10 +108,11 @@ impl Run<'_> {
             let (from, to, color) = (args.s(0), args.s(1), args.triple(2));
             let result = match (ColorSpace::from_name(from), ColorSpace::from_name(to)) {
                 (Some(from), Some(to)) => transformc(from, to, color),
+                _ if self.s.mask[lane] == 0 => color,
                 _ => {
                     let place = (self.group.locate)(span);
                     let message = format!("{place}: error: there is no color space \"{from}\" or no \"{to}\"");
-                    self.report_once(message);
+                    self.report_once(lane, message);
                     color
                 }
             };
@@ -144,11 +149,11 @@ impl Run<'_> {
         }
     }
 
-    /// Reports a mistake that shading survives, once a batch.
-    pub(super) fn report_once(&mut self, message: String) {
-        let report = Report::Error(message);
-        if !self.reports.contains(&report) {
-            self.reports.push(report);
+    /// Reports a mistake that shading survives, once a batch, among what its lane prints.
+    pub(super) fn report_once(&mut self, lane: usize, message: String) {
+        if !self.s.said.contains(&message) {
+            self.say(lane, Report::Error(message.clone()));
+            self.s.said.push(message);
         }
     }
 }
@@ -181,6 +186,13 @@ fn compute(routine: &Routine, a: &Lane, floats: &mut [f32; 16], ints: &mut [i32]
         Routine::Determinant => floats[0] = matrix::determinant(&a.matrix()),
         Routine::Blackbody => floats[..3].copy_from_slice(&blackbody(a.f(0))),
         Routine::WavelengthColor => floats[..3].copy_from_slice(&wavelength_color(a.f(0))),
+        Routine::TransformColorSlope => {
+            if let (Some(from), Some(to)) = (ColorSpace::from_name(a.s(0)), ColorSpace::from_name(a.s(1))) {
+                floats[..3].copy_from_slice(&transformc_slope(from, to, a.triple(2), a.triple(5)));
+            } else {
+                floats[..3].copy_from_slice(&a.triple(5));
+            }
+        }
         Routine::TransformUnit => floats[0] = a.f(2) * unit(a.s(0)) / unit(a.s(1)),
         Routine::Stof => floats[0] = string::stof(a.s(0)),
         _ => {

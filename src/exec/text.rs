@@ -56,11 +56,8 @@ impl Run<'_> {
 
     pub(super) fn print(&mut self, to: PrintTo, wanted: &TextFormat, src: &[Reg], span: Span) {
         let (file, values) = if to == PrintTo::File { src.split_at(1) } else { src.split_at(0) };
-        if self.texts.is_empty() {
-            self.texts.resize_with(self.n, Vec::new);
-        }
         for lane in 0..self.n {
-            if self.mask[lane] == 0 {
+            if self.s.mask[lane] == 0 {
                 continue;
             }
             let text = self.text_of(wanted, values, lane);
@@ -75,13 +72,13 @@ impl Run<'_> {
                 PrintTo::Warning => Report::Warning(placed(&text)),
                 PrintTo::Error => Report::Error(placed(&text)),
             };
-            self.texts[lane].push(report);
+            self.say(lane, report);
         }
     }
 
     pub(super) fn format(&mut self, wanted: &TextFormat, dst: Reg, src: &[Reg]) {
         for lane in 0..self.lanes_of(dst) {
-            if self.lanes_of(dst) > 1 && self.mask[lane] == 0 {
+            if self.lanes_of(dst) > 1 && self.s.mask[lane] == 0 {
                 continue;
             }
             let text = self.text_of(wanted, src, lane);
@@ -89,10 +86,18 @@ impl Run<'_> {
         }
     }
 
+    /// Keeps a report until the batch ends.
+    pub(super) fn say(&mut self, lane: usize, report: Report) {
+        if self.s.texts.len() < self.n {
+            self.s.texts.resize_with(self.n, Vec::new);
+        }
+        self.s.texts[lane].push(report);
+    }
+
     /// Hands over what the lanes have printed.
     pub(super) fn flush(&mut self) {
-        for lane in std::mem::take(&mut self.texts) {
-            self.reports.extend(lane);
+        for lane in &mut self.s.texts {
+            self.reports.append(lane);
         }
     }
 }

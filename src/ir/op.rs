@@ -197,6 +197,8 @@ pub enum Routine {
     WavelengthColor,
     /// `transformc`: from, to, color.
     TransformColor,
+    /// The change of `transformc`: from, to, color, its change.
+    TransformColorSlope,
     /// `transformu`: from, to, length.
     TransformUnit,
     /// `hash` of an int.

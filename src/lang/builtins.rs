@@ -80,8 +80,22 @@ int trace(point, vector, [token,value]*)
 
 /// Builtins that the language has and velour does not run; a call is an error that names the function.
 pub const NOT_YET: &[&str] = &[
-    "bump", "displace", "dict_find", "dict_next", "dict_value", "environment", "gettextureinfo", "getmessage",
-    "pointcloud_get", "pointcloud_search", "pointcloud_write", "random", "setmessage", "texture", "texture3d", "trace",
+    "bump",
+    "displace",
+    "dict_find",
+    "dict_next",
+    "dict_value",
+    "environment",
+    "gettextureinfo",
+    "getmessage",
+    "pointcloud_get",
+    "pointcloud_search",
+    "pointcloud_write",
+    "random",
+    "setmessage",
+    "texture",
+    "texture3d",
+    "trace",
 ];
 
 /// What a formal parameter of a builtin accepts.
@@ -171,7 +185,8 @@ fn parse(text: &str) -> (String, Signature) {
 
 fn parse_type(text: &str) -> Type {
     let (name, array) = text.strip_suffix("[]").map_or((text, false), |name| (name, true));
-    let bases = [Base::Int, Base::Float, Base::Color, Base::Point, Base::Vector, Base::Normal, Base::Matrix, Base::String];
+    let bases =
+        [Base::Int, Base::Float, Base::Color, Base::Point, Base::Vector, Base::Normal, Base::Matrix, Base::String];
     let base = bases.into_iter().find(|base| base.name() == name).unwrap_or(Base::Void);
     Type::of(base).array(if array { Length::Unsized } else { Length::Single })
 }

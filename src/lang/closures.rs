@@ -31,6 +31,8 @@ pub struct ParamSpec {
     pub kind: ParamKind,
     /// What it means, with unit and range.
     pub doc: &'static str,
+    /// The strings it may be, where only some mean something; empty for any value.
+    pub choices: &'static [&'static str],
 }
 
 /// Which built-in scattering model a closure stands for.
@@ -121,7 +123,11 @@ impl ClosureTable {
 }
 
 const fn param(name: &'static str, kind: ParamKind, doc: &'static str) -> ParamSpec {
-    ParamSpec { name, kind, doc }
+    ParamSpec { name, kind, doc, choices: &[] }
+}
+
+const fn choice(name: &'static str, choices: &'static [&'static str], doc: &'static str) -> ParamSpec {
+    ParamSpec { name, kind: ParamKind::String, doc, choices }
 }
 
 const NORMAL: ParamSpec = param("N", ParamKind::Normal, "shading normal, unit length");
@@ -129,14 +135,36 @@ const TANGENT: ParamSpec = param("U", ParamKind::Vector, "direction of xalpha; z
 const ETA: ParamSpec = param("eta", ParamKind::Float, "index of refraction inside over outside, > 0");
 const SHEEN_ROUGHNESS: ParamSpec = param("roughness", ParamKind::Float, "Charlie roughness r, clamped to 0.01..1");
 const LAYERING: ParamSpec =
-    param("layering", ParamKind::String, "how the base is scaled: \"min\" (default), \"view\" or \"kelemen\"");
-const SHADOWING: ParamSpec = param(
+    choice("layering", &["min", "view", "kelemen"], "how the base is scaled: \"min\" (default), \"view\" or \"kelemen\"");
+const SHADOWING: ParamSpec = choice(
     "shadowing",
-    ParamKind::String,
+    &["exact", "published", "ashikhmin"],
     "shadowing term: \"exact\" (default), \"published\" (fit of the paper) or \"ashikhmin\" (real-time visibility)",
 );
 const SOFTENING: ParamSpec =
     param("softening", ParamKind::Int, "1 (default) softens the terminator by eq. 4, 0 does not");
+
+/// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
+pub const NOT_YET: &[&str] = &[
+    "phong",
+    "ward",
+    "subsurface",
+    "oren_nayar_diffuse_bsdf",
+    "burley_diffuse_bsdf",
+    "dielectric_bsdf",
+    "conductor_bsdf",
+    "generalized_schlick_bsdf",
+    "translucent_bsdf",
+    "transparent_bsdf",
+    "subsurface_bssrdf",
+    "chiang_hair_bsdf",
+    "uniform_edf",
+    "anisotropic_vdf",
+    "medium_vdf",
+];
+
+const LABEL: ParamSpec =
+    param("label", ParamKind::String, "a name for the host; velour carries it and gives it no meaning");
 
 fn standard_specs() -> Vec<ClosureSpec> {
     use ParamKind::*;
@@ -144,11 +172,12 @@ fn standard_specs() -> Vec<ClosureSpec> {
         name,
         model,
         params: params.to_vec(),
-        keywords: keywords.to_vec(),
+        // Every closure takes a label, after the keywords that its model reads.
+        keywords: keywords.iter().cloned().chain([LABEL]).collect(),
         doc,
     };
     let microfacet = [
-        param("distribution", String, "\"ggx\", \"beckmann\" or \"default\" (ggx)"),
+        choice("distribution", &["ggx", "beckmann", "default", "sharp", ""], "\"ggx\", \"beckmann\" or \"default\" (ggx)"),
         NORMAL,
         TANGENT,
         param("xalpha", Float, "GGX width along U, 0..1; 0 is a mirror"),

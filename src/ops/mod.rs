@@ -6,6 +6,7 @@
 //! | subject | module |
 //! |---|---|
 //! | division, rounding, roots and logarithms with OSL's limits, steps and mixes | [`arithmetic`] |
+//! | derivatives of colour conversions | [`color_slope`] |
 //! | luminance, black bodies, wavelengths, colour spaces | [`color`] |
 //! | reflection, refraction, Fresnel's formula | [`fresnel`] |
 //! | the `hash` overloads | [`hash`] |
@@ -17,6 +18,7 @@
 
 pub mod arithmetic;
 pub mod color;
+pub mod color_slope;
 pub mod format;
 pub mod fresnel;
 pub mod hash;

@@ -11,7 +11,8 @@ use std::collections::HashMap;
 
 /// Replaces every [`Instr::Derivative`] by the derivative itself.
 pub fn expand(program: &mut Program) {
-    let mut needs = Needs { regs: vec![false; program.regs.len()], arrays: vec![false; program.arrays.len()], changed: true };
+    let mut needs =
+        Needs { regs: vec![false; program.regs.len()], arrays: vec![false; program.arrays.len()], changed: true };
     while needs.changed {
         needs.changed = false;
         visit_instrs(&program.body, &mut |instr| needs.instr(instr));
@@ -20,7 +21,8 @@ pub fn expand(program: &mut Program) {
         return;
     }
     let body = std::mem::take(&mut program.body);
-    let mut writer = Writer { program, needs, slopes: HashMap::new(), arrays: HashMap::new(), zero: None, out: Vec::new() };
+    let mut writer =
+        Writer { program, needs, slopes: HashMap::new(), arrays: HashMap::new(), zero: None, out: Vec::new() };
     let body = writer.block(body);
     program.body = body;
 }
@@ -76,6 +78,9 @@ impl Needs {
                 src[..noise.dims as usize].iter().for_each(|&reg| self.mark(reg));
             }
             Instr::Call { routine: Routine::Spline | Routine::SplineInverse, src, .. } => self.mark(src[1]),
+            Instr::Call { routine: Routine::TransformColor, src, .. } => {
+                src[2..].iter().for_each(|&reg| self.mark(reg))
+            }
             _ => {}
         }
     }
@@ -238,7 +243,32 @@ impl Writer<'_> {
                 let slope = self.slope(x).map(|slope| self.mul(slope, slope_of_x));
                 self.slopes.insert(value, slope);
             }
+            Instr::Call { routine: Routine::TransformColor, ref dst, ref src, span } => {
+                let (values, src) = (dst.clone(), src.clone());
+                self.emit(instr);
+                self.color_slope(&values, &src, span);
+            }
             other => self.emit(other),
+        }
+    }
+
+    fn color_slope(&mut self, values: &[Reg], src: &[Reg], span: velour_grammar::Span) {
+        let from: Vec<Slope> = src[2..].iter().map(|&reg| self.slope(reg)).collect();
+        let mut slopes = [[None; 2]; 3];
+        for axis in 0..2 {
+            if from.iter().all(|slope| slope[axis].is_none()) {
+                continue;
+            }
+            let moved: Vec<Reg> = from.iter().map(|slope| slope[axis].unwrap_or_else(|| self.zero())).collect();
+            let dst: Vec<Reg> = (0..3).map(|_| self.program.reg(Kind::Float, false)).collect();
+            for (slope, &reg) in slopes.iter_mut().zip(&dst) {
+                slope[axis] = Some(reg);
+            }
+            let src = src.iter().copied().chain(moved).collect();
+            self.emit(Instr::Call { routine: Routine::TransformColorSlope, dst, src, span });
+        }
+        for (&value, slope) in values.iter().zip(slopes) {
+            self.slopes.insert(value, slope);
         }
     }
 

@@ -15,36 +15,21 @@ impl Preprocessor<'_> {
     pub(super) fn condition(&mut self, directive: PpToken, tokens: &[PpToken]) -> bool {
         let value = self.resolve_defined(tokens).and_then(|tokens| {
             let tokens = self.expand_all(tokens);
-            let mut reader = Reader {
-                state: self,
-                tokens: &tokens,
-                at: 0,
-                depth: 0,
-            };
+            let mut reader = Reader { state: self, tokens: &tokens, at: 0, depth: 0 };
             let value = reader.ternary(true)?;
             match tokens.get(reader.at) {
                 None => Ok(value),
-                Some(t) => Err((
-                    Some(*t),
-                    "this expression goes on where it should end".into(),
-                    "an operator is missing",
-                )),
+                Some(t) => {
+                    Err((Some(*t), "this expression goes on where it should end".into(), "an operator is missing"))
+                }
             }
         });
         match value {
             Ok(value) => value != 0,
             Err((token, message, help)) => {
                 let span = self.span(token.unwrap_or(directive));
-                let label = if token.is_some() {
-                    "here"
-                } else {
-                    "the expression of this directive"
-                };
-                self.diagnostics.push(
-                    Diagnostic::error("E0108", span, message)
-                        .label(label)
-                        .help(help),
-                );
+                let label = if token.is_some() { "here" } else { "the expression of this directive" };
+                self.diagnostics.push(Diagnostic::error("E0108", span, message).label(label).help(help));
                 false
             }
         }
@@ -61,34 +46,18 @@ impl Preprocessor<'_> {
                 continue;
             }
             let (name, used) = match rest {
-                [open, name, close, ..]
-                    if open.kind == Kind::ParenOpen && close.kind == Kind::ParenClose =>
-                {
-                    (*name, 3)
-                }
+                [open, name, close, ..] if open.kind == Kind::ParenOpen && close.kind == Kind::ParenClose => (*name, 3),
                 [name, ..] => (*name, 1),
                 [] => (*first, 0),
             };
             if used == 0 || name.kind != Kind::Name {
                 let help = "write `defined(NAME)`";
-                return Err((
-                    Some(name),
-                    "`defined` needs the name of a macro".into(),
-                    help,
-                ));
+                return Err((Some(name), "`defined` needs the name of a macro".into(), help));
             }
             rest = &rest[used..];
-            let value = if self.macros.contains_key(self.text(name)) {
-                "1"
-            } else {
-                "0"
-            };
+            let value = if self.macros.contains_key(self.text(name)) { "1" } else { "0" };
             let place = self.table.invent(value);
-            out.push(PpToken {
-                kind: Kind::Number,
-                place,
-                ..*first
-            });
+            out.push(PpToken { kind: Kind::Number, place, ..*first });
         }
         Ok(out)
     }
@@ -121,24 +90,13 @@ impl Reader<'_, '_> {
             return Ok(());
         }
         let token = self.tokens.get(self.at).copied();
-        Err((
-            token,
-            format!("`{shown}` is missing in this expression"),
-            "every `(` needs a `)` and every `?` a `:`",
-        ))
+        Err((token, format!("`{shown}` is missing in this expression"), "every `(` needs a `)` and every `?` a `:`"))
     }
 
-    fn deeper<T>(
-        &mut self,
-        read: impl FnOnce(&mut Self) -> Result<T, Mistake>,
-    ) -> Result<T, Mistake> {
+    fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T, Mistake>) -> Result<T, Mistake> {
         if self.depth == MAX_DEPTH {
             let token = self.tokens.get(self.at).copied();
-            return Err((
-                token,
-                format!("this expression is nested more than {MAX_DEPTH} deep"),
-                "split it up",
-            ));
+            return Err((token, format!("this expression is nested more than {MAX_DEPTH} deep"), "split it up"));
         }
         self.depth += 1;
         let result = read(self);
@@ -199,19 +157,11 @@ impl Reader<'_, '_> {
             }
             Kind::Number => match number(self.state.text(token)) {
                 Some(value) => Ok(value),
-                None => Err((
-                    Some(token),
-                    "this is not an integer".into(),
-                    "#if counts with integers only",
-                )),
+                None => Err((Some(token), "this is not an integer".into(), "#if counts with integers only")),
             },
             // A name that is no macro counts as 0.
             Kind::Name => Ok(0),
-            _ => Err((
-                Some(token),
-                format!("`{}` does not belong in #if", self.state.text(token)),
-                help,
-            )),
+            _ => Err((Some(token), format!("`{}` does not belong in #if", self.state.text(token)), help)),
         }
     }
 }
@@ -261,10 +211,7 @@ fn apply(operator: Kind, a: i64, b: i64) -> i64 {
 /// A decimal, hexadecimal or octal integer with C's suffixes.
 fn number(text: &str) -> Option<i64> {
     let digits = text.trim_end_matches(['u', 'U', 'l', 'L']);
-    if let Some(hex) = digits
-        .strip_prefix("0x")
-        .or_else(|| digits.strip_prefix("0X"))
-    {
+    if let Some(hex) = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
         return u64::from_str_radix(hex, 16).ok().map(|v| v as i64);
     }
     if digits.len() > 1 && digits.starts_with('0') {

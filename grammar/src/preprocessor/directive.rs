@@ -6,8 +6,8 @@ use crate::diagnostic::Diagnostic;
 use crate::source::Place;
 
 const KNOWN: &[&str] = &[
-    "define", "undef", "include", "if", "ifdef", "ifndef", "elif", "else", "endif", "error",
-    "warning", "line", "pragma",
+    "define", "undef", "include", "if", "ifdef", "ifndef", "elif", "else", "endif", "error", "warning", "line",
+    "pragma",
 ];
 
 impl Preprocessor<'_> {
@@ -50,25 +50,11 @@ impl Preprocessor<'_> {
     }
 
     /// `#if` and its kin. The condition is looked at only where the text is read at all.
-    fn open_condition(
-        &mut self,
-        hash: PpToken,
-        name: PpToken,
-        live: bool,
-        test: impl FnOnce(&mut Self) -> bool,
-    ) {
+    fn open_condition(&mut self, hash: PpToken, name: PpToken, live: bool, test: impl FnOnce(&mut Self) -> bool) {
         let active = live && test(self);
-        let place = Place {
-            end: name.place.end,
-            ..hash.place
-        };
+        let place = Place { end: name.place.end, ..hash.place };
         if let Some(input) = self.inputs.last_mut() {
-            input.conditions.push(Conditional {
-                place,
-                active,
-                done: active || !live,
-                in_else: false,
-            });
+            input.conditions.push(Conditional { place, active, done: active || !live, in_else: false });
         }
     }
 
@@ -99,11 +85,7 @@ impl Preprocessor<'_> {
 
     /// `#elif` (with its expression) or `#else`.
     fn alternative(&mut self, name: PpToken, expression: Option<&[PpToken]>) {
-        let state = self
-            .inputs
-            .last()
-            .and_then(|i| i.conditions.last())
-            .map(|c| (c.done, c.in_else));
+        let state = self.inputs.last().and_then(|i| i.conditions.last()).map(|c| (c.done, c.in_else));
         let Some((done, false)) = state else {
             return self.stray(name);
         };
@@ -117,11 +99,7 @@ impl Preprocessor<'_> {
 
     /// `#endif`
     fn end_condition(&mut self, name: PpToken) {
-        if self
-            .inputs
-            .last_mut()
-            .is_none_or(|i| i.conditions.pop().is_none())
-        {
+        if self.inputs.last_mut().is_none_or(|i| i.conditions.pop().is_none()) {
             self.stray(name);
         }
     }
@@ -131,11 +109,7 @@ impl Preprocessor<'_> {
         let word = self.text(name).to_string();
         let after_else = self.inputs.last().is_some_and(|i| !i.conditions.is_empty());
         let span = self.span(name);
-        let message = if after_else {
-            format!("#{word} after #else")
-        } else {
-            format!("#{word} without #if")
-        };
+        let message = if after_else { format!("#{word} after #else") } else { format!("#{word} without #if") };
         self.diagnostics.push(
             Diagnostic::error("E0106", span, message)
                 .label("belongs to no condition")
@@ -148,19 +122,14 @@ impl Preprocessor<'_> {
         let text = self.line_text(arguments);
         let span = self.span(name);
         let help = "the text asks for this: look at the conditions around the directive";
-        self.diagnostics
-            .push(Diagnostic::error("E0113", span, format!("#error {text}").trim_end()).help(help));
+        self.diagnostics.push(Diagnostic::error("E0113", span, format!("#error {text}").trim_end()).help(help));
     }
 
     /// `#warning`
     fn warning_directive(&mut self, name: PpToken, arguments: &[PpToken]) {
         let text = self.line_text(arguments);
         let span = self.span(name);
-        self.diagnostics.push(Diagnostic::warning(
-            "W0101",
-            span,
-            format!("#warning {text}").trim_end(),
-        ));
+        self.diagnostics.push(Diagnostic::warning("W0101", span, format!("#warning {text}").trim_end()));
     }
 
     /// `#pragma once`, `#pragma error "…"`, `#pragma warning "…"`; all others are none of our business.
@@ -182,11 +151,7 @@ impl Preprocessor<'_> {
 
     /// A directive that does not exist.
     fn unknown(&mut self, name: PpToken, word: &str) {
-        let close = KNOWN
-            .iter()
-            .min_by_key(|known| distance(word, known))
-            .copied()
-            .unwrap_or("include");
+        let close = KNOWN.iter().min_by_key(|known| distance(word, known)).copied().unwrap_or("include");
         let help = if distance(word, close) <= 2 {
             format!("did you mean `#{close}`?")
         } else {
@@ -194,22 +159,14 @@ impl Preprocessor<'_> {
         };
         let span = self.span(name);
         self.diagnostics.push(
-            Diagnostic::error("E0101", span, format!("there is no directive #{word}"))
-                .label("unknown")
-                .help(help),
+            Diagnostic::error("E0101", span, format!("there is no directive #{word}")).label("unknown").help(help),
         );
     }
 
     /// The text of a line of tokens as it was written.
     pub(super) fn line_text(&self, tokens: &[PpToken]) -> String {
         match (tokens.first(), tokens.last()) {
-            (Some(a), Some(b)) => self
-                .table
-                .text(Place {
-                    end: b.place.end,
-                    ..a.place
-                })
-                .to_string(),
+            (Some(a), Some(b)) => self.table.text(Place { end: b.place.end, ..a.place }).to_string(),
             _ => String::new(),
         }
     }

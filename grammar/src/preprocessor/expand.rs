@@ -28,10 +28,7 @@ impl Preprocessor<'_> {
         };
         let found = found.clone();
         if found.off.get() {
-            return Some(PpToken {
-                painted: true,
-                ..token
-            });
+            return Some(PpToken { painted: true, ..token });
         }
         match found.meaning {
             Meaning::File | Meaning::Line => Some(self.position(token, found.meaning)),
@@ -48,10 +45,7 @@ impl Preprocessor<'_> {
                         self.replace(token, &found, arguments);
                         None
                     }
-                    None => Some(PpToken {
-                        kind: Kind::Broken,
-                        ..token
-                    }),
+                    None => Some(PpToken { kind: Kind::Broken, ..token }),
                 }
             }
         }
@@ -62,22 +56,13 @@ impl Preprocessor<'_> {
         if token.kind != Kind::UnclosedComment {
             return token;
         }
-        let span = self.span(PpToken {
-            place: Place {
-                end: token.place.start + 2,
-                ..token.place
-            },
-            ..token
-        });
+        let span = self.span(PpToken { place: Place { end: token.place.start + 2, ..token.place }, ..token });
         self.diagnostics.push(
             Diagnostic::error("E0116", span, "this comment is never closed")
                 .label("the comment starts here")
                 .help("add `*/` where it ends"),
         );
-        PpToken {
-            kind: Kind::Broken,
-            ..token
-        }
+        PpToken { kind: Kind::Broken, ..token }
     }
 
     /// Expands a list of tokens on its own.
@@ -90,12 +75,7 @@ impl Preprocessor<'_> {
         }
         self.depth += 1;
         let gathering = std::mem::replace(&mut self.gathering, false);
-        self.frames.push(Frame {
-            tokens,
-            cursor: 0,
-            owner: None,
-            barrier: true,
-        });
+        self.frames.push(Frame { tokens, cursor: 0, owner: None, barrier: true });
         let base = self.frames.len();
         let mut out = Vec::new();
         while let Some(token) = self.pull() {
@@ -116,13 +96,9 @@ impl Preprocessor<'_> {
     fn too_deep(&mut self, token: PpToken) {
         let span = self.span(token);
         self.diagnostics.push(
-            Diagnostic::error(
-                "E0115",
-                span,
-                format!("macro calls are nested more than {MAX_DEPTH} deep"),
-            )
-            .label("not expanded further")
-            .help("write intermediate results to variables"),
+            Diagnostic::error("E0115", span, format!("macro calls are nested more than {MAX_DEPTH} deep"))
+                .label("not expanded further")
+                .help("write intermediate results to variables"),
         );
         self.stopped = true;
         self.frames.clear();
@@ -139,22 +115,13 @@ impl Preprocessor<'_> {
         };
         self.spend(1 + text.len() / 8, Some(place));
         let call = self.call(token);
-        PpToken {
-            kind,
-            place: self.table.invent(&text),
-            call,
-            ..token
-        }
+        PpToken { kind, place: self.table.invent(&text), call, ..token }
     }
 
     /// Notes a call of a macro.
     fn call(&mut self, name: PpToken) -> u32 {
         let text = self.text(name).into();
-        self.table.calls.push(MacroCall {
-            name: text,
-            place: name.place,
-            parent: name.call,
-        });
+        self.table.calls.push(MacroCall { name: text, place: name.place, parent: name.call });
         self.table.calls.len() as u32 - 1
     }
 
@@ -168,13 +135,9 @@ impl Preprocessor<'_> {
                 let text = self.text(name).to_string();
                 let span = self.span(name);
                 self.diagnostics.push(
-                    Diagnostic::error(
-                        "E0111",
-                        span,
-                        format!("this call of macro {text} is never closed"),
-                    )
-                    .label("called here")
-                    .help("add the missing `)`"),
+                    Diagnostic::error("E0111", span, format!("this call of macro {text} is never closed"))
+                        .label("called here")
+                        .help("add the missing `)`"),
                 );
             }
             return None;
@@ -190,15 +153,7 @@ impl Preprocessor<'_> {
             self.wrong_count(name, called, lists.len());
             return None;
         }
-        Some(
-            lists
-                .into_iter()
-                .map(|raw| Argument {
-                    raw,
-                    expanded: None,
-                })
-                .collect(),
-        )
+        Some(lists.into_iter().map(|raw| Argument { raw, expanded: None }).collect())
     }
 
     /// The tokens between the parentheses, split at the commas of the outer level.
@@ -220,19 +175,14 @@ impl Preprocessor<'_> {
                 Kind::ParenClose if depth == 0 => return Some(lists),
                 Kind::Comma if depth == 1 && !rest => lists.push(Vec::new()),
                 // A name whose macro is off here must stay unexpanded when the argument is read again later.
-                Kind::Name if self.is_off(token) => lists.last_mut()?.push(PpToken {
-                    painted: true,
-                    ..token
-                }),
+                Kind::Name if self.is_off(token) => lists.last_mut()?.push(PpToken { painted: true, ..token }),
                 _ => lists.last_mut()?.push(token),
             }
         }
     }
 
     fn is_off(&self, token: PpToken) -> bool {
-        self.macros
-            .get(self.table.text(token.place))
-            .is_some_and(|m| m.off.get())
+        self.macros.get(self.table.text(token.place)).is_some_and(|m| m.off.get())
     }
 
     fn wrong_count(&mut self, name: PpToken, called: &Macro, given: usize) {
@@ -240,15 +190,9 @@ impl Preprocessor<'_> {
         let wanted = params.len();
         let text = self.text(name).to_string();
         let span = self.span(name);
-        let (least, plural) = if called.variadic {
-            ("at least ", wanted - 1)
-        } else {
-            ("", wanted)
-        };
-        let message = format!(
-            "macro {text} takes {least}{plural} argument{}, not {given}",
-            if plural == 1 { "" } else { "s" }
-        );
+        let (least, plural) = if called.variadic { ("at least ", wanted - 1) } else { ("", wanted) };
+        let message =
+            format!("macro {text} takes {least}{plural} argument{}, not {given}", if plural == 1 { "" } else { "s" });
         let mut message = Diagnostic::error("E0110", span, message)
             .label("called here")
             .help(format!("its parameters are ({})", params.join(", ")));
@@ -269,22 +213,12 @@ impl Preprocessor<'_> {
         self.spend(tokens.len() + 1, Some(name.place));
         if !self.stopped {
             called.off.set(true);
-            self.frames.push(Frame {
-                tokens,
-                cursor: 0,
-                owner: Some(called.clone()),
-                barrier: false,
-            });
+            self.frames.push(Frame { tokens, cursor: 0, owner: Some(called.clone()), barrier: false });
         }
     }
 
     /// The body with arguments put in, `#` and `##` done.
-    fn substitute(
-        &mut self,
-        called: &Macro,
-        arguments: &mut [Argument],
-        call: u32,
-    ) -> Vec<PpToken> {
+    fn substitute(&mut self, called: &Macro, arguments: &mut [Argument], call: u32) -> Vec<PpToken> {
         let body = &called.body;
         let mut out: Vec<PpToken> = Vec::with_capacity(body.len());
         let mut i = 0;
@@ -293,11 +227,7 @@ impl Preprocessor<'_> {
             let (here, next) = (body[i], body.get(i + 1));
             let plain = here.param.is_none() && here.token.kind != Kind::Hash;
             if plain && next.is_none_or(|b| b.token.kind != Kind::Paste) {
-                out.push(PpToken {
-                    call,
-                    line_start: false,
-                    ..here.token
-                });
+                out.push(PpToken { call, line_start: false, ..here.token });
                 i += 1;
                 continue;
             }
@@ -315,8 +245,7 @@ impl Preprocessor<'_> {
             i = next;
             while body.get(i).is_some_and(|b| b.token.kind == Kind::Paste) && i + 1 < body.len() {
                 let right_at = body[i + 1];
-                let (piece, next) =
-                    self.operand(body, i + 1, arguments, call, called.params.is_some());
+                let (piece, next) = self.operand(body, i + 1, arguments, call, called.params.is_some());
                 let right = piece.unwrap_or_else(|| raw(right_at, arguments));
                 let rest = called.variadic && right_at.param == Some(arguments.len() - 1);
                 self.paste(&mut left, right, call, rest);
@@ -341,23 +270,12 @@ impl Preprocessor<'_> {
             && here.token.kind == Kind::Hash
             && let Some(param) = body.get(i + 1).and_then(|b| b.param)
         {
-            return (
-                Some(vec![self.stringise(
-                    &arguments[param].raw,
-                    here.token,
-                    call,
-                )]),
-                i + 2,
-            );
+            return (Some(vec![self.stringise(&arguments[param].raw, here.token, call)]), i + 2);
         }
         if here.param.is_some() {
             return (None, i + 1);
         }
-        let token = PpToken {
-            call,
-            line_start: false,
-            ..here.token
-        };
+        let token = PpToken { call, line_start: false, ..here.token };
         (Some(vec![token]), i + 1)
     }
 
@@ -395,13 +313,7 @@ impl Preprocessor<'_> {
         }
         text.push('"');
         self.spend(1 + text.len() / 8, Some(hash.place));
-        PpToken {
-            kind: Kind::Text,
-            place: self.table.invent(&text),
-            call,
-            line_start: false,
-            ..hash
-        }
+        PpToken { kind: Kind::Text, place: self.table.invent(&text), call, line_start: false, ..hash }
     }
 
     /// `left ## right`, where either may be empty.
@@ -425,38 +337,23 @@ impl Preprocessor<'_> {
             let at = self.table.outermost(a.place, call);
             let span = self.table.aside(at, NO_CALL);
             self.diagnostics.push(
-                Diagnostic::error(
-                    "E0112",
-                    span,
-                    format!("`##` makes `{text}`, which is not one token"),
-                )
-                .label("in this macro call")
-                .help(
-                    "`##` joins parts of names or numbers; leave it out to put tokens side by side",
-                ),
+                Diagnostic::error("E0112", span, format!("`##` makes `{text}`, which is not one token"))
+                    .label("in this macro call")
+                    .help("`##` joins parts of names or numbers; leave it out to put tokens side by side"),
             );
             left.append(&mut right);
             return;
         };
         let place = self.table.invent(&text);
         left.pop();
-        left.push(PpToken {
-            kind: one.kind,
-            place,
-            call,
-            painted: false,
-            ..a
-        });
+        left.push(PpToken { kind: one.kind, place, call, painted: false, ..a });
         left.extend(right.into_iter().skip(1));
     }
 }
 
 /// An argument as it was written.
 fn raw(at: BodyToken, arguments: &[Argument]) -> Vec<PpToken> {
-    at.param
-        .and_then(|p| arguments.get(p))
-        .map(|a| a.raw.clone())
-        .unwrap_or_default()
+    at.param.and_then(|p| arguments.get(p)).map(|a| a.raw.clone()).unwrap_or_default()
 }
 
 /// Text for the inside of a string literal.

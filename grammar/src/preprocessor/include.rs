@@ -25,13 +25,9 @@ impl Preprocessor<'_> {
         if self.gathering {
             let span = self.span(name);
             self.diagnostics.push(
-                Diagnostic::error(
-                    "E0117",
-                    span,
-                    "#include among the arguments of a macro call",
-                )
-                .label("cannot be obeyed here")
-                .help("close the macro call first"),
+                Diagnostic::error("E0117", span, "#include among the arguments of a macro call")
+                    .label("cannot be obeyed here")
+                    .help("close the macro call first"),
             );
             return;
         }
@@ -41,13 +37,9 @@ impl Preprocessor<'_> {
         if self.inputs.len() > MAX_DEPTH {
             let span = self.table.aside(place, crate::source::NO_CALL);
             self.diagnostics.push(
-                Diagnostic::error(
-                    "E0104",
-                    span,
-                    format!("includes are nested more than {MAX_DEPTH} deep"),
-                )
-                .label("not read")
-                .help("does a file include itself? put `#pragma once` at its top"),
+                Diagnostic::error("E0104", span, format!("includes are nested more than {MAX_DEPTH} deep"))
+                    .label("not read")
+                    .help("does a file include itself? put `#pragma once` at its top"),
             );
             return;
         }
@@ -57,15 +49,9 @@ impl Preprocessor<'_> {
                     self.open(&file, Arc::from(text), Some(place));
                 }
             }
-            Found::NotText(file) => {
-                self.cannot_read(place, format!("{file} is not a text file"), None)
-            }
+            Found::NotText(file) => self.cannot_read(place, format!("{file} is not a text file"), None),
             Found::Unreadable(file, error) => {
-                self.cannot_read(
-                    place,
-                    format!("cannot read {file}"),
-                    Some(error.to_string()),
-                );
+                self.cannot_read(place, format!("cannot read {file}"), Some(error.to_string()));
             }
             Found::Nothing(looked) => self.not_found(&wanted, quoted, place, &looked),
         }
@@ -86,18 +72,9 @@ impl Preprocessor<'_> {
             }
             Some(Kind::Less) => {
                 let end = tokens.iter().position(|t| t.kind == Kind::Greater)?;
-                let text = tokens[1..end]
-                    .iter()
-                    .fold(String::new(), |s, t| s + self.text(*t));
+                let text = tokens[1..end].iter().fold(String::new(), |s, t| s + self.text(*t));
                 let last = tokens[end].place;
-                let place = if last.file == first?.place.file {
-                    Place {
-                        end: last.end,
-                        ..first?.place
-                    }
-                } else {
-                    last
-                };
+                let place = if last.file == first?.place.file { Place { end: last.end, ..first?.place } } else { last };
                 Some((text, false, place))
             }
             _ => None,
@@ -115,11 +92,7 @@ impl Preprocessor<'_> {
 
     /// Looks through the folders, then through the virtual files.
     fn search(&self, wanted: &str, quoted: bool) -> Found {
-        let here = self
-            .inputs
-            .last()
-            .and_then(|i| i.folder.clone())
-            .filter(|_| quoted);
+        let here = self.inputs.last().and_then(|i| i.folder.clone()).filter(|_| quoted);
         let mut looked = Vec::new();
         for folder in here.iter().chain(&self.options.include_dirs) {
             let path = folder.join(wanted);
@@ -147,9 +120,7 @@ impl Preprocessor<'_> {
     fn virtual_file(&self, wanted: &str, here: Option<&Path>) -> Option<&(String, String)> {
         let beside = here.map(|folder| folder.join(wanted));
         let files = &self.options.virtual_files;
-        let by_folder = files
-            .iter()
-            .find(|(name, _)| beside.as_deref() == Some(Path::new(name)));
+        let by_folder = files.iter().find(|(name, _)| beside.as_deref() == Some(Path::new(name)));
         by_folder.or_else(|| files.iter().find(|(name, _)| name == wanted))
     }
 
@@ -157,11 +128,7 @@ impl Preprocessor<'_> {
     fn cannot_read(&mut self, place: Place, message: String, reason: Option<String>) {
         let span = self.table.aside(place, crate::source::NO_CALL);
         let help = reason.unwrap_or_else(|| "only text files can be included".into());
-        self.diagnostics.push(
-            Diagnostic::error("E0105", span, message)
-                .label("included here")
-                .help(help),
-        );
+        self.diagnostics.push(Diagnostic::error("E0105", span, message).label("included here").help(help));
     }
 
     /// Says that a file is nowhere, and where it was looked for.
@@ -169,26 +136,17 @@ impl Preprocessor<'_> {
         let span = self.table.aside(place, crate::source::NO_CALL);
         let help = match (looked, quoted) {
             ([], true) => "no folder to look in: name one with -I".to_string(),
-            ([], false) => {
-                "`<…>` looks only in the folders given with -I, and there are none".to_string()
-            }
+            ([], false) => "`<…>` looks only in the folders given with -I, and there are none".to_string(),
             _ => format!("looked in {}; add a folder with -I", looked.join(", ")),
         };
-        self.diagnostics.push(
-            Diagnostic::error("E0103", span, format!("cannot find {wanted}"))
-                .label("not found")
-                .help(help),
-        );
+        self.diagnostics
+            .push(Diagnostic::error("E0103", span, format!("cannot find {wanted}")).label("not found").help(help));
     }
 }
 
 /// A folder's name for people: the current folder has an empty one.
 fn shown(folder: &Path) -> String {
-    if folder.as_os_str().is_empty() {
-        ".".into()
-    } else {
-        folder.display().to_string()
-    }
+    if folder.as_os_str().is_empty() { ".".into() } else { folder.display().to_string() }
 }
 
 /// What makes a file the same one for `#pragma once`.

@@ -46,14 +46,7 @@ pub(super) struct BodyToken {
 impl Macro {
     fn built_in(meaning: Meaning) -> Rc<Macro> {
         let off = Cell::new(false);
-        Rc::new(Macro {
-            meaning,
-            place: None,
-            params: None,
-            variadic: false,
-            body: Vec::new(),
-            off,
-        })
+        Rc::new(Macro { meaning, place: None, params: None, variadic: false, body: Vec::new(), off })
     }
 
     /// `__FILE__`
@@ -101,10 +94,7 @@ impl Preprocessor<'_> {
         let mut rest = &arguments[1..];
         let mut params = None;
         let mut variadic = false;
-        if rest
-            .first()
-            .is_some_and(|t| t.kind == Kind::ParenOpen && !t.space)
-        {
+        if rest.first().is_some_and(|t| t.kind == Kind::ParenOpen && !t.space) {
             let Some((names, all, length)) = self.parameters(rest) else {
                 return;
             };
@@ -115,14 +105,7 @@ impl Preprocessor<'_> {
             return;
         };
         let place = Some(name.place);
-        let new = Macro {
-            meaning: Meaning::Body,
-            place,
-            params,
-            variadic,
-            body,
-            off: Cell::new(false),
-        };
+        let new = Macro { meaning: Meaning::Body, place, params, variadic, body, off: Cell::new(false) };
         if let Some(old) = self.macros.get(&text).cloned()
             && !self.same(&old, &new)
         {
@@ -132,9 +115,7 @@ impl Preprocessor<'_> {
     }
 
     fn is_built_in(&self, name: &str) -> bool {
-        self.macros
-            .get(name)
-            .is_some_and(|m| m.meaning != Meaning::Body)
+        self.macros.get(name).is_some_and(|m| m.meaning != Meaning::Body)
     }
 
     /// The names between the parentheses, whether the last one takes the rest, and how many tokens that was.
@@ -181,23 +162,12 @@ impl Preprocessor<'_> {
 
     /// The body with its parameters found.
     fn body(&mut self, tokens: &[PpToken], params: Option<&[String]>) -> Option<Vec<BodyToken>> {
-        let find =
-            |s: &Self, t: PpToken| params.and_then(|p| p.iter().position(|name| name == s.text(t)));
+        let find = |s: &Self, t: PpToken| params.and_then(|p| p.iter().position(|name| name == s.text(t)));
         let body: Vec<BodyToken> = tokens
             .iter()
-            .map(|t| BodyToken {
-                token: *t,
-                param: if t.kind == Kind::Name {
-                    find(self, *t)
-                } else {
-                    None
-                },
-            })
+            .map(|t| BodyToken { token: *t, param: if t.kind == Kind::Name { find(self, *t) } else { None } })
             .collect();
-        let at_edge = [body.first(), body.last()]
-            .into_iter()
-            .flatten()
-            .find(|b| b.token.kind == Kind::Paste);
+        let at_edge = [body.first(), body.last()].into_iter().flatten().find(|b| b.token.kind == Kind::Paste);
         if let Some(edge) = at_edge {
             let span = self.span(edge.token);
             self.diagnostics.push(
@@ -207,19 +177,13 @@ impl Preprocessor<'_> {
             );
             return None;
         }
-        let lonely = |i: usize| {
-            body[i].token.kind == Kind::Hash && body.get(i + 1).is_none_or(|b| b.param.is_none())
-        };
+        let lonely = |i: usize| body[i].token.kind == Kind::Hash && body.get(i + 1).is_none_or(|b| b.param.is_none());
         if let Some(i) = (0..body.len()).find(|i| params.is_some() && lonely(*i)) {
             let span = self.span(body[i].token);
             self.diagnostics.push(
-                Diagnostic::error(
-                    "E0109",
-                    span,
-                    "`#` is not followed by a parameter of the macro",
-                )
-                .label("makes a string of nothing")
-                .help("name one of the parameters after `#`"),
+                Diagnostic::error("E0109", span, "`#` is not followed by a parameter of the macro")
+                    .label("makes a string of nothing")
+                    .help("name one of the parameters after `#`"),
             );
             return None;
         }
@@ -231,26 +195,17 @@ impl Preprocessor<'_> {
         a.params == b.params
             && a.variadic == b.variadic
             && a.body.len() == b.body.len()
-            && a.body
-                .iter()
-                .zip(&b.body)
-                .all(|(x, y)| self.text(x.token) == self.text(y.token))
+            && a.body.iter().zip(&b.body).all(|(x, y)| self.text(x.token) == self.text(y.token))
     }
 
     fn redefined(&mut self, text: &str, name: PpToken, old: &Macro) {
         let span = self.span(name);
-        let mut message = Diagnostic::warning(
-            "W0102",
-            span,
-            format!("macro {text} is defined again with another body"),
-        )
-        .label("this one is used from here on")
-        .help(format!("write `#undef {text}` before it if that is meant"));
+        let mut message =
+            Diagnostic::warning("W0102", span, format!("macro {text} is defined again with another body"))
+                .label("this one is used from here on")
+                .help(format!("write `#undef {text}` before it if that is meant"));
         if let Some(place) = old.place {
-            message = message.also(
-                self.table.aside(place, crate::source::NO_CALL),
-                "first defined here",
-            );
+            message = message.also(self.table.aside(place, crate::source::NO_CALL), "first defined here");
         }
         self.diagnostics.push(message);
     }

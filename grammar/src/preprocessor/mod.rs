@@ -156,12 +156,7 @@ pub(crate) fn run(name: &str, text: &str, options: &Options) -> Preprocessed {
             tokens.push((token, index));
         }
     }
-    Preprocessed {
-        tokens,
-        table: state.table,
-        diagnostics: state.diagnostics,
-        stopped: state.stopped,
-    }
+    Preprocessed { tokens, table: state.table, diagnostics: state.diagnostics, stopped: state.stopped }
 }
 
 impl Preprocessor<'_> {
@@ -170,18 +165,10 @@ impl Preprocessor<'_> {
         let file = self.table.files.len() as u32;
         let tokens: Rc<[PpToken]> = scan(&text, file).into();
         let place = tokens.first().map(|t| t.place);
-        self.table
-            .files
-            .push(SourceFile::new(name, text, included_from));
+        self.table.files.push(SourceFile::new(name, text, included_from));
         let folder = std::path::Path::new(name).parent().map(PathBuf::from);
         let cost = tokens.len() + 16;
-        self.inputs.push(Input {
-            tokens,
-            cursor: 0,
-            file,
-            conditions: Vec::new(),
-            folder,
-        });
+        self.inputs.push(Input { tokens, cursor: 0, file, conditions: Vec::new(), folder });
         self.spend(cost, included_from.or(place));
     }
 
@@ -196,8 +183,7 @@ impl Preprocessor<'_> {
                 self.stopped = true;
                 self.frames.clear();
                 self.inputs.clear();
-                let span =
-                    place.map_or(Span::NONE, |p| self.table.aside(p, crate::source::NO_CALL));
+                let span = place.map_or(Span::NONE, |p| self.table.aside(p, crate::source::NO_CALL));
                 self.diagnostics.push(
                     Diagnostic::error("E0114", span, format!("macros and includes produce more than {BUDGET} tokens"))
                         .label("the limit was passed here")
@@ -274,10 +260,7 @@ impl Preprocessor<'_> {
                 return false;
             }
         }
-        let next = self
-            .inputs
-            .last()
-            .and_then(|input| input.tokens.get(input.cursor));
+        let next = self.inputs.last().and_then(|input| input.tokens.get(input.cursor));
         next.is_some_and(|token| token.kind == Kind::ParenOpen)
     }
 

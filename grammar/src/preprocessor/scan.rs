@@ -169,20 +169,9 @@ pub fn scan(text: &str, file: u32) -> Vec<PpToken> {
             line_start = true;
             continue;
         }
-        let place = Place {
-            file,
-            start: range.start as u32,
-            end: range.end as u32,
-        };
+        let place = Place { file, start: range.start as u32, end: range.end as u32 };
         let space = range.start > previous_end;
-        tokens.push(PpToken {
-            kind,
-            space,
-            line_start,
-            painted: false,
-            place,
-            call: NO_CALL,
-        });
+        tokens.push(PpToken { kind, space, line_start, painted: false, place, call: NO_CALL });
         line_start = false;
         previous_end = range.end;
     }

@@ -58,9 +58,7 @@ fn strength(expr: &Expr) -> u8 {
         ExprKind::Assign(..) => level::ASSIGN,
         ExprKind::Ternary(..) => level::TERNARY,
         ExprKind::Binary(op, ..) => binary_strength(*op),
-        ExprKind::Unary(..) | ExprKind::Cast(..) | ExprKind::Step { prefix: true, .. } => {
-            level::UNARY
-        }
+        ExprKind::Unary(..) | ExprKind::Cast(..) | ExprKind::Step { prefix: true, .. } => level::UNARY,
         ExprKind::Step { .. } | ExprKind::Index(..) | ExprKind::Field(..) => level::POSTFIX,
         _ => level::PRIMARY,
     }
@@ -95,25 +93,13 @@ fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
         ExprKind::Unary(op, a) => prefixed(op.symbol(), a),
         ExprKind::Binary(op, a, b) => {
             let level = binary_strength(*op);
-            vec![
-                Piece::Expr(a, level),
-                text(format!(" {} ", op.symbol())),
-                Piece::Expr(b, level + 1),
-            ]
+            vec![Piece::Expr(a, level), text(format!(" {} ", op.symbol())), Piece::Expr(b, level + 1)]
         }
         ExprKind::Assign(op, a, b) => {
             let symbol = op.map_or("", BinaryOp::symbol);
-            vec![
-                Piece::Expr(a, level::POSTFIX),
-                text(format!(" {symbol}= ")),
-                Piece::Expr(b, level::ASSIGN),
-            ]
+            vec![Piece::Expr(a, level::POSTFIX), text(format!(" {symbol}= ")), Piece::Expr(b, level::ASSIGN)]
         }
-        ExprKind::Step {
-            increment,
-            prefix,
-            target,
-        } => {
+        ExprKind::Step { increment, prefix, target } => {
             let symbol = if *increment { "++" } else { "--" };
             match prefix {
                 true => prefixed(symbol, target),
@@ -128,31 +114,17 @@ fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
             Piece::Expr(b, level::ASSIGN),
         ],
         ExprKind::Comma(list) => listed("", list, ""),
-        ExprKind::Cast(ty, a) => vec![
-            text(format!("({})", print_type(ty))),
-            Piece::Expr(a, level::UNARY),
-        ],
+        ExprKind::Cast(ty, a) => vec![text(format!("({})", print_type(ty))), Piece::Expr(a, level::UNARY)],
         ExprKind::Construct(ty, list) => listed(&format!("{}(", print_type(ty)), list, ")"),
         ExprKind::Call(name, list) => listed(&format!("{}(", name.name), list, ")"),
         ExprKind::Index(a, i) => {
-            vec![
-                Piece::Expr(a, level::POSTFIX),
-                text("["),
-                Piece::Expr(i, level::COMMA),
-                text("]"),
-            ]
+            vec![Piece::Expr(a, level::POSTFIX), text("["), Piece::Expr(i, level::COMMA), text("]")]
         }
         ExprKind::Field(a, name) => {
             // `1.x` would be a malformed number.
             let number = matches!(a.kind, ExprKind::Int(_) | ExprKind::Float(_));
             let (open, close) = if number { ("(", ")") } else { ("", "") };
-            vec![
-                text(open),
-                Piece::Expr(a, level::POSTFIX),
-                text(close),
-                text("."),
-                text(&name.name),
-            ]
+            vec![text(open), Piece::Expr(a, level::POSTFIX), text(close), text("."), text(&name.name)]
         }
         ExprKind::InitList(list) => listed("{", list, "}"),
         ExprKind::Error => vec![text("<error>")],
@@ -161,16 +133,9 @@ fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
 
 /// An operator in front of an operand, with a space where `- -x` must not become `--x`.
 fn prefixed<'a>(symbol: &'static str, operand: &'a Expr) -> Vec<Piece<'a>> {
-    let apart = matches!(
-        operand.kind,
-        ExprKind::Unary(..) | ExprKind::Step { prefix: true, .. }
-    );
+    let apart = matches!(operand.kind, ExprKind::Unary(..) | ExprKind::Step { prefix: true, .. });
     let space = if apart { " " } else { "" };
-    vec![
-        text(symbol),
-        text(space),
-        Piece::Expr(operand, level::UNARY),
-    ]
+    vec![text(symbol), text(space), Piece::Expr(operand, level::UNARY)]
 }
 
 fn listed<'a>(open: &str, list: &'a [Expr], close: &'static str) -> Vec<Piece<'a>> {

@@ -7,10 +7,7 @@ use std::fmt::Write;
 
 /// Prints a translation unit.
 pub fn print(file: &File) -> String {
-    let mut printer = Printer {
-        out: String::new(),
-        indent: 0,
-    };
+    let mut printer = Printer { out: String::new(), indent: 0 };
     for (i, item) in file.items.iter().enumerate() {
         if i > 0 {
             printer.out.push('\n');
@@ -45,11 +42,7 @@ pub fn print_type(ty: &TypeSpec) -> String {
         TypeName::Void => "void",
         TypeName::Struct(name) => name,
     };
-    if ty.closure {
-        format!("closure {base}")
-    } else {
-        base.to_string()
-    }
+    if ty.closure { format!("closure {base}") } else { base.to_string() }
 }
 
 /// The word that starts a shader.
@@ -93,12 +86,7 @@ impl Printer {
     fn structure(&mut self, decl: &StructDecl) {
         self.line(&format!("struct {} {{", decl.name.name));
         for field in &decl.fields {
-            self.line(&format!(
-                "    {} {}{};",
-                print_type(&field.ty),
-                field.name.name,
-                brackets(field.array)
-            ));
+            self.line(&format!("    {} {}{};", print_type(&field.ty), field.name.name, brackets(field.array)));
         }
         self.line("};");
     }
@@ -106,16 +94,11 @@ impl Printer {
     fn shader(&mut self, decl: &ShaderDecl) {
         let _ = write!(self.out, "{} {}", kind_word(decl.kind), decl.name.name);
         self.metadata(&decl.metadata);
-        self.out
-            .push_str(if decl.params.is_empty() { "(" } else { "(\n" });
+        self.out.push_str(if decl.params.is_empty() { "(" } else { "(\n" });
         for (i, param) in decl.params.iter().enumerate() {
             self.out.push_str("    ");
             self.param(param);
-            self.out.push_str(if i + 1 < decl.params.len() {
-                ",\n"
-            } else {
-                "\n"
-            });
+            self.out.push_str(if i + 1 < decl.params.len() { ",\n" } else { "\n" });
         }
         self.out.push_str(") {\n");
         self.body(&decl.body);
@@ -123,12 +106,7 @@ impl Printer {
 
     fn function(&mut self, decl: &FunctionDecl) {
         self.margin();
-        let _ = write!(
-            self.out,
-            "{} {}(",
-            print_type(&decl.return_type),
-            decl.name.name
-        );
+        let _ = write!(self.out, "{} {}(", print_type(&decl.return_type), decl.name.name);
         for (i, param) in decl.params.iter().enumerate() {
             if i > 0 {
                 self.out.push_str(", ");
@@ -210,11 +188,7 @@ impl Printer {
                 self.out.push_str("{\n");
                 self.body(body);
             }
-            StmtKind::If {
-                condition,
-                then,
-                otherwise,
-            } => self.branch(condition, then, otherwise.as_deref()),
+            StmtKind::If { condition, then, otherwise } => self.branch(condition, then, otherwise.as_deref()),
             StmtKind::While { condition, body } => {
                 let _ = write!(self.out, "while ({})", print_expr(condition));
                 self.nested(body);
@@ -224,12 +198,7 @@ impl Printer {
                 self.nested(body);
                 self.line(&format!("while ({});", print_expr(condition)));
             }
-            StmtKind::For {
-                init,
-                condition,
-                step,
-                body,
-            } => {
+            StmtKind::For { init, condition, step, body } => {
                 self.out.push_str("for (");
                 self.simple(init);
                 for (before, part, after) in [(" ", condition, ";"), (" ", step, ")")] {
@@ -318,13 +287,8 @@ impl Printer {
 /// True when an `else` behind the statement would belong to an `if` inside of it.
 fn ends_open(stmt: &Stmt) -> bool {
     match &stmt.kind {
-        StmtKind::If {
-            otherwise: None, ..
-        } => true,
-        StmtKind::If {
-            otherwise: Some(last),
-            ..
-        } => ends_open(last),
+        StmtKind::If { otherwise: None, .. } => true,
+        StmtKind::If { otherwise: Some(last), .. } => ends_open(last),
         StmtKind::While { body, .. } | StmtKind::For { body, .. } => ends_open(body),
         _ => false,
     }

@@ -222,7 +222,7 @@ impl Lower<'_> {
     /// Is a parameter connected; is a value known before the shader runs?
     fn known_about(&mut self, name: &str, arg: &Argument) -> Value {
         let known = match arg {
-            Argument::In(expr) if name == "isconnected" => match root_variable(expr) {
+            Argument::In(expr) if name == "isconnected" => match root_variable(expr).map(|var| self.origin(var)) {
                 // 1 for a parameter that is fed, 2 for one that is read, 3 for both.
                 Some(var) => self.connected.contains(&var) as i32 + 2 * self.read.contains(&var) as i32,
                 None => 0,
@@ -236,8 +236,14 @@ impl Lower<'_> {
         Value::Regs(vec![self.b.int(known)])
     }
 
+    /// The variable outside all functions that a variable stands for.
+    pub(super) fn origin(&self, var: VarId) -> VarId {
+        self.stands_for.get(&var).copied().unwrap_or(var)
+    }
+
     fn spline(&mut self, name: &str, args: &[Argument]) -> Value {
-        let exprs: Vec<&Expr> = args.iter().filter_map(|a| if let Argument::In(e) = a { Some(e) } else { None }).collect();
+        let exprs: Vec<&Expr> =
+            args.iter().filter_map(|a| if let Argument::In(e) = a { Some(e) } else { None }).collect();
         let (basis, x) = (self.reg(exprs[0]), self.reg(exprs[1]));
         let array = self.expr(exprs[exprs.len() - 1]);
         let mut knots = self.elements(&array);
@@ -309,7 +315,8 @@ impl Lower<'_> {
         };
         let kinds: Vec<Kind> = [Kind::Int].into_iter().chain(old.iter().map(|_| kind)).collect();
         let results = self.b.call(Routine::Attribute(ty), &kinds, inputs, self.span);
-        let new: Vec<Reg> = results[1..].iter().zip(&old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
+        let new: Vec<Reg> =
+            results[1..].iter().zip(&old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
         self.write_flat(out, &new);
         results[0]
     }
@@ -357,7 +364,7 @@ impl Lower<'_> {
 }
 
 /// The variable an expression is, or is a field of.
-fn root_variable(expr: &Expr) -> Option<VarId> {
+pub(super) fn root_variable(expr: &Expr) -> Option<VarId> {
     let mut expr = expr;
     loop {
         match &expr.kind {

@@ -60,6 +60,7 @@ pub fn lower(layers: &[Layer], options: LowerOptions) -> Program {
             exit: None,
             assigned: Assigned::default(),
             connected: Vec::new(),
+            stands_for: HashMap::new(),
             read: read_params(layers, number, options.outputs),
             layer: number as u32,
             span: Span::NONE,
@@ -114,12 +115,7 @@ impl Lower<'_> {
         VarId(at.unwrap_or(0) as u32)
     }
 
-    fn parameter(
-        &mut self,
-        param: &ShaderParam,
-        layer: &Layer,
-        finished: &[HashMap<String, (Value, Type)>],
-    ) {
+    fn parameter(&mut self, param: &ShaderParam, layer: &Layer, finished: &[HashMap<String, (Value, Type)>]) {
         let var = param.var;
         let variable = &self.shader.variables[var.0 as usize];
         let (name, mut ty) = (variable.name.clone(), variable.ty.clone());
@@ -278,7 +274,9 @@ impl Lower<'_> {
             return array;
         }
         match &ty.element {
-            Element::Struct(s) => Value::Struct(s.fields.iter().map(|(_, ty)| self.constants(binding, ty, next)).collect()),
+            Element::Struct(s) => {
+                Value::Struct(s.fields.iter().map(|(_, ty)| self.constants(binding, ty, next)).collect())
+            }
             Element::Base(base) => {
                 let single = matches!(binding, Binding::Numbers(n) if n.len() == 1) && base.is_triple();
                 let mut regs = Vec::new();

@@ -22,6 +22,7 @@ use super::build::Builder;
 use super::program::{Reg, ScopeId};
 use crate::check::typed::{Shader, VarId};
 use assigned::Assigned;
+use std::collections::HashMap;
 use value::Value;
 use velour_grammar::Span;
 
@@ -54,6 +55,8 @@ struct Lower<'a> {
     assigned: Assigned,
     /// Which parameters of the layer are connected.
     connected: Vec<VarId>,
+    /// The variable of the caller that a parameter of a function stands for, to ask what it is connected to.
+    stands_for: HashMap<VarId, VarId>,
     /// Which of its parameters are read by later layers, or by the host.
     read: Vec<VarId>,
     /// Which layer of the group this is.

@@ -22,7 +22,8 @@ impl Lower<'_> {
         };
         let outputs = call.ty.base().map_or(1, Base::floats) as u8;
         let noise = |dims: usize| Noise { kind, dims: dims as u8, outputs, periodic, gradient: false };
-        let coordinates = args.iter().skip(named as usize).take_while(|arg| arg.ty().base() != Some(Base::String)).count();
+        let coordinates =
+            args.iter().skip(named as usize).take_while(|arg| arg.ty().base() != Some(Base::String)).count();
         let values = self.arguments(&args[..named as usize + coordinates]);
         let src: Vec<Reg> = values[named as usize..].concat();
         let noise = noise(src.len() / (1 + periodic as usize));
@@ -59,7 +60,9 @@ impl Lower<'_> {
     /// Noise whose kind is a string: known here, or compared with every name when it runs.
     fn named_noise(&mut self, name: Reg, mut noise: Noise, src: &[Reg]) -> Vec<Reg> {
         if let Some(known) = self.b.known_int(name) {
-            if let Some(kind) = NoiseKind::from_name(Symbol(known).text()).filter(|kind| !noise.periodic || kind.repeats()) {
+            if let Some(kind) =
+                NoiseKind::from_name(Symbol(known).text()).filter(|kind| !noise.periodic || kind.repeats())
+            {
                 noise.kind = kind;
                 return self.noise(noise, src);
             }

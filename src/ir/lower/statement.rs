@@ -1,6 +1,7 @@
 //! Statements and calls of user functions.
 
 use super::assigned::Effects;
+use super::builtin::root_variable;
 use super::value::Value;
 use super::{Frame, Lower};
 use crate::check::typed::*;
@@ -145,6 +146,14 @@ impl Lower<'_> {
         let mut outputs = Vec::new();
         let mut values = Vec::new();
         for (arg, &(var, _)) in args.iter().zip(&function.params) {
+            let root = match arg {
+                Argument::In(expr) => root_variable(expr),
+                Argument::Out(place) => Some(place.var),
+            };
+            if let Some(root) = root {
+                let origin = self.origin(root);
+                self.stands_for.insert(var, origin);
+            }
             let value = match arg {
                 Argument::In(expr) => self.expr(expr),
                 Argument::Out(place) => {

@@ -229,7 +229,7 @@ impl Lower<'_> {
             _ if from == to || (from.is_triple() && to.is_triple()) => regs.to_vec(),
             (Base::Int, Base::Float) => vec![self.b.int_to_float(regs[0])],
             (Base::Float, Base::Int) => vec![self.b.float_to_int(regs[0])],
-            (Base::Int, Base::Closure) => vec![self.b.constant(Const::NoClosure)],
+            (_, Base::Closure) if from != Base::Closure => vec![self.b.constant(Const::NoClosure)],
             (Base::Int, _) => {
                 let float = self.b.int_to_float(regs[0]);
                 self.convert(&[float], Base::Float, to)
