@@ -55,24 +55,21 @@ fn known(ty: &Type, value: &Expr) -> Option<String> {
     }
     let mut parts = Vec::new();
     constants(value, &mut parts)?;
-    let single = ty.element_type().base()?.components();
-    // A float stands for all components of a triple, and for the diagonal of a matrix.
-    if parts.len() == 1 && !ty.is_array() && single == 3 {
-        parts = vec![parts[0].clone(); 3];
-    }
-    if parts.len() == 1 && !ty.is_array() && single == 16 {
-        parts = (0..16).map(|i| if i % 5 == 0 { parts[0].clone() } else { "0".to_owned() }).collect();
-    }
-    Some(if parts.len() == 1 && !ty.is_array() { parts.remove(0) } else { format!("[ {} ]", parts.join(" ")) })
+    let plain = parts.len() == 1 && !ty.is_array();
+    Some(if plain { parts.remove(0) } else { format!("[ {} ]", parts.join(" ")) })
 }
 
 /// The numbers and strings of a constant expression, in order.
 fn constants(value: &Expr, out: &mut Vec<String>) -> Option<()> {
     match &value.kind {
         ExprKind::Int(x) => out.push(x.to_string()),
-        ExprKind::Float(x) => out.push(x.to_string()),
+        ExprKind::Float(x) => out.push(float_text(*x)),
         ExprKind::String(x) => out.push(format!("{x:?}")),
-        ExprKind::Convert(inner) => return constants(inner, out),
+        ExprKind::Convert(inner) => {
+            let start = out.len();
+            constants(inner, out)?;
+            spread(&value.ty, start, out);
+        }
         ExprKind::Unary(UnaryOp::Neg, inner) => {
             let start = out.len();
             constants(inner, out)?;
@@ -81,13 +78,9 @@ fn constants(value: &Expr, out: &mut Vec<String>) -> Option<()> {
             }
         }
         ExprKind::Construct(parts) | ExprKind::Aggregate(parts) => {
-            let triple = value.ty.base().is_some_and(Base::is_triple);
             let start = out.len();
             parts.iter().try_for_each(|part| constants(part, out))?;
-            if triple && out.len() == start + 1 {
-                let only = out[start].clone();
-                out.extend([only.clone(), only]);
-            }
+            spread(&value.ty, start, out);
         }
         ExprKind::ConstructIn(space, parts) => {
             constants(space, out)?;
@@ -96,4 +89,22 @@ fn constants(value: &Expr, out: &mut Vec<String>) -> Option<()> {
         _ => return None,
     }
     Some(())
+}
+
+/// A float alone stands for all components of a triple, and for the diagonal of a matrix.
+fn spread(ty: &Type, start: usize, out: &mut Vec<String>) {
+    let components = ty.base().map_or(1, Base::components);
+    if out.len() != start + 1 || components == 1 {
+        return;
+    }
+    let only = out[start].clone();
+    let at = |i: usize| if components == 3 || i.is_multiple_of(5) { only.clone() } else { "0".to_owned() };
+    out.truncate(start);
+    out.extend((0..components).map(at));
+}
+
+/// The shortest digits that give the number back, with an exponent where there would be many zeros.
+fn float_text(x: f32) -> String {
+    let long = x != 0.0 && !(1e-4..1e7).contains(&x.abs()) && x.is_finite();
+    if long { format!("{x:e}") } else { x.to_string() }
 }

@@ -95,6 +95,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let path =
         path.ok_or_else(|| Failure::Usage("error: no image is named\n  help: add `-o picture.png`".to_owned()))?;
     output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     let compiler = ShaderFiles::new(args.compile.compiler()?);
     let scene = Scene::load(&args.scene, &args.path, &compiler).map_err(failure)?;
     for warning in &scene.warnings {

@@ -39,7 +39,17 @@ pub fn check(path: &Path) -> Result<Format, String> {
     if !folder.is_dir() {
         return Err(format!("the folder `{}` is not there", folder.display()));
     }
-    Ok(format)
+    if path.is_dir() {
+        return Err(format!("`{}` is a folder", path.display()));
+    }
+    // Permissions, full disks and odd file systems are best found out by trying.
+    let temporary = temporary_name(path);
+    let tried = File::create(&temporary).map_err(|e| format!("cannot write `{}`: {e}", path.display()));
+    if tried.is_ok() {
+        // What cannot be removed now is written over, and then renamed, by the image.
+        let _ = std::fs::remove_file(&temporary);
+    }
+    tried.map(|_| format)
 }
 
 /// Writes `image` to `path` in the format of its extension.

@@ -4,6 +4,7 @@ use crate::closure::tree::Tree;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::exec::{Group, Host, Machine, Points, Report};
 use crate::math::columns::Column3;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Kinds of rays, as `raytype()` tests them.
@@ -24,6 +25,9 @@ pub mod ray_type {
 
 pub use crate::closure::event;
 
+/// How many different reports a thread keeps: a shader that prints at every point would fill all memory.
+const MOST_REPORTS: usize = 1000;
+
 /// One thread's shader, lobes and columns.
 pub struct Shading {
     /// The batch to shade: fill it, then call `shade`.
@@ -43,6 +47,8 @@ pub struct Shading {
     /// True once a shader cannot be run; from then on nothing is shaded.
     failed: bool,
     nothing: Tree,
+    /// All reports so far, as text.
+    told: HashSet<String>,
 }
 
 impl Shading {
@@ -60,6 +66,7 @@ impl Shading {
             reports: Vec::new(),
             failed: false,
             nothing: Tree::default(),
+            told: HashSet::new(),
         }
     }
 
@@ -86,12 +93,18 @@ impl Shading {
         }
         let tree = self.machine.shade(group, &self.points);
         self.lobes.flatten(group.table(), tree, &self.viewer, &self.points.ng);
+        let mut news = Vec::new();
         if !self.lobes.dropped().is_empty() {
-            report_dropped(group, tree, &self.lobes, &mut self.reports);
+            report_dropped(group, tree, &self.lobes, &mut news);
         }
-        let news = self.machine.take_reports();
-        self.failed |= news.iter().any(|report| matches!(report, Report::Fatal(_)));
-        self.reports.extend(news);
+        news.extend(self.machine.take_reports());
+        for report in news {
+            let fatal = matches!(report, Report::Fatal(_));
+            self.failed |= fatal;
+            if self.told.len() < MOST_REPORTS && self.told.insert(format!("{report:?}")) || fatal {
+                self.reports.push(report);
+            }
+        }
     }
 
     /// True once a shader cannot be run.

@@ -3,7 +3,7 @@
 use super::error::{Place, SceneError};
 use super::geometry::{Geometry, Shape};
 use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamHints, ParamType, ParamValue, Usage, Values};
-use super::load::{Background, Camera, Material, Options, Scene};
+use super::load::{Background, Camera, Material, Options, Scene, within};
 use super::mesh::{MaterialNames, add_mesh};
 use super::nearest::nearest;
 use super::spec::{Statements, parse_group};
@@ -157,7 +157,7 @@ impl<'c> Builder<'c> {
         let last = self.last_material(e)?;
         let filename = e.required("filename")?;
         let place = e.value_place("filename");
-        let Some(path) = self.folders.iter().map(|f| f.join(filename)).find(|p| p.is_file()) else {
+        let Some(path) = self.folders.iter().map(|f| within(f, filename)).find(|p| p.is_file()) else {
             let looked: Vec<String> = self.folders.iter().map(|f| f.display().to_string()).collect();
             return Err(SceneError::at(place, format!("mesh `{filename}` is not found"))
                 .with_help(format!("looked in {}", looked.join(", "))));

@@ -2,6 +2,7 @@
 
 use super::error::SceneError;
 use super::group::{GroupCompiler, GroupSpec, Layer, Values};
+use super::load::within;
 use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Shader};
 use crate::exec::Group;
 use crate::ir::lower::Binding;
@@ -61,7 +62,7 @@ impl ShaderFiles {
 fn find(name: &str, search: &[PathBuf]) -> Option<PathBuf> {
     let name = name.strip_suffix(".oso").unwrap_or(name);
     let with_extension = if name.ends_with(".osl") { name.to_owned() } else { format!("{name}.osl") };
-    let candidates = search.iter().map(|folder| folder.join(&with_extension));
+    let candidates = search.iter().map(|folder| within(folder, &with_extension));
     candidates.chain([PathBuf::from(&with_extension)]).find(|path: &PathBuf| Path::is_file(path))
 }
 

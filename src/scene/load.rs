@@ -113,6 +113,11 @@ pub struct Scene {
     pub warnings: Vec<String>,
 }
 
+/// A file of a folder, without the dot that stands for the working folder.
+pub(super) fn within(folder: &Path, name: &str) -> PathBuf {
+    if folder == Path::new(".") { PathBuf::from(name) } else { folder.join(name) }
+}
+
 impl Scene {
     /// Loads the scene that `argument` names or is; `search` lists folders to look in after the scene's own.
     pub fn load(argument: &str, search: &[PathBuf], compiler: &dyn GroupCompiler) -> Result<Scene, SceneError> {

@@ -30,7 +30,7 @@ pub fn add_mesh(
     let fail = |what: String| SceneError::at(place.clone(), format!("mesh `{}`: {what}", path.display()));
     let options =
         tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
-    let (models, materials) = tobj::load_obj(path, &options).map_err(|e| fail(e.to_string()))?;
+    let (models, materials) = tobj::load_obj(path, &options).map_err(|e| fail(complaint(&e)))?;
     // A missing MTL is no mistake: OBJ files are often passed on without theirs.
     let materials = materials.unwrap_or_default();
     // As in testrender, shapes are matched by their own name only when no material name matches.
@@ -56,6 +56,15 @@ pub fn add_mesh(
         return Err(fail("it has no faces".into()));
     }
     Ok(degenerate)
+}
+
+/// What is wrong with a mesh file, for people.
+fn complaint(error: &tobj::LoadError) -> String {
+    match error {
+        tobj::LoadError::ReadError => "it is not text, so it is no OBJ file".to_owned(),
+        tobj::LoadError::OpenFileFailed => "it cannot be opened".to_owned(),
+        other => other.to_string(),
+    }
 }
 
 /// The parts of one shape that differ only in material are one surface to `surfacearea()`.
