@@ -285,7 +285,7 @@ fn indices_outside_are_reported_and_clamped() {
         ),
         (
             r#"int a[3] = {1, 2, 3}; a[-1 - (int)u] = 7; printf("%d\n", a[0]);"#,
-            "Error(\"test.osl:1:36: error: index -1 is outside 0..2\")\n7\n",
+            "Error(\"test.osl:1:48: error: index -1 is outside 0..2\")\n7\n",
         ),
     ]);
 }
@@ -302,6 +302,10 @@ fn derivatives() {
         (r#"float f = 0; if (u > 0.3) f = 3 * u; printf("%g ", Dx(f));"#, "0 0 3 3 "),
         (r#"float f = u; for (int i = 0; i < 3; ++i) f *= 2; printf("%g ", Dx(f));"#, "8 8 8 8 "),
         (r#"float f = u > 0.3 ? u : 2 * u; printf("%g ", Dx(f));"#, "2 2 1 1 "),
+        (
+            r#"float x = u; float t = 0; for (int i = 0; i < 2; ++i) { t = x + 1; x = 5 * x; } printf("%g ", Dx(t));"#,
+            "5 5 5 5 ",
+        ),
         (r#"float f = max(u, 1 - u); printf("%g ", Dx(f));"#, "-1 -1 -1 1 "),
         (r#"float k[4] = {0, 1, 4, 9}; printf("%g ", Dx(spline("linear", u, k)));"#, "3 3 3 3 "),
         (

@@ -28,7 +28,7 @@ impl Checker<'_> {
             let ty = Type { element: crate::lang::types::Element::Struct(structure.clone()), length: Length::Single };
             if args.len() < structure.fields.len() {
                 let (given, wanted) = (args.len(), structure.fields.len());
-                let message = format!("`{}` is made of {wanted} parts, {given} are given", name.name);
+                let message = format!("`{}` has {wanted} parts, not {given}", name.name);
                 let diagnostic = Diagnostic::error("E0510", span, message);
                 self.report(
                     diagnostic.help("give all parts, or use an initialiser list `{ … }`, where missing parts are zero"),
@@ -340,7 +340,12 @@ impl Checker<'_> {
         let mut keywords = Vec::new();
         while let (Some(token), Some(value)) = (values.next(), values.next()) {
             let ExprKind::String(word) = &token.kind else {
-                self.error("E0411", token.span, "the name of a keyword parameter is a literal string");
+                self.error(
+                    "E0411",
+                    token.span,
+                    "the name of a keyword parameter is a literal string",
+                    "write the name in quotes",
+                );
                 continue;
             };
             let Some(at) = spec.keywords.iter().position(|keyword| keyword.name == word) else {

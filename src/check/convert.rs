@@ -33,6 +33,19 @@ pub(super) fn assignable(to: &Type, from: &Type) -> bool {
     }
 }
 
+/// The way out when a value is of the wrong type.
+fn mismatch_help(to: &Type, from: &Type) -> &'static str {
+    match (to.base(), from.base()) {
+        (Some(Base::String), Some(base)) if base.is_number() => "format(\"%g\", value) makes a string of a number",
+        (Some(base), Some(Base::String)) if base.is_number() => "stof() and stoi() read a number from a string",
+        (Some(Base::Float | Base::Int), Some(base)) if base.is_triple() => "take one component, for example `[0]`",
+        (None, _) if to.structure().is_some() => "a struct is made by its name, `Name(…)`, or by a list `{ … }`",
+        (None, _) => "an array is made by a list `{ … }`",
+        (_, None) => "name one of its elements or fields",
+        _ => "build it from numbers with its constructor",
+    }
+}
+
 impl Checker<'_> {
     /// The expression as type `to`, or a message and a stand-in.
     pub fn convert(&mut self, expr: Expr, to: &Type) -> Expr {
@@ -58,12 +71,14 @@ impl Checker<'_> {
     }
 
     pub fn mismatch(&mut self, expr: &Expr, to: &Type) -> Expr {
-        let message = format!("a {to} is needed here, this is a {}", expr.ty);
+        let message = format!("{} is needed here, this is {}", to.named(), expr.ty.named());
         let mut diagnostic = Diagnostic::error("E0501", expr.span, message);
         if to.base() == Some(Base::Closure) {
             diagnostic = diagnostic.help("multiply it by a closure, for example `emission()`");
         } else if expr.ty.base() == Some(Base::Closure) {
             diagnostic = diagnostic.help("a closure is not a color: only `Ci` and other closures can hold it");
+        } else {
+            diagnostic = diagnostic.help(mismatch_help(to, &expr.ty));
         }
         self.report(diagnostic);
         Expr::error(expr.span)
@@ -75,7 +90,8 @@ impl Checker<'_> {
             Some(Base::Int) => expr,
             _ if expr.is_error() => expr,
             Some(Base::Void) | None => {
-                self.error("E0501", expr.span, format!("a {} is neither true nor false", expr.ty));
+                let message = format!("{} is neither true nor false", expr.ty.named());
+                self.error("E0501", expr.span, message, "compare it, or a part of it, with something");
                 Expr::error(expr.span)
             }
             Some(_) => {

@@ -35,7 +35,7 @@ impl Checker<'_> {
             return Type { element: Element::Struct(structure.clone()), length };
         }
         let diagnostic = Diagnostic::error("E0407", span, format!("there is no type `{name}`"));
-        self.report(diagnostic.help("declare `struct` before it is used"));
+        self.report(diagnostic.help(format!("declare `struct {name} {{ … }};` above, or use a built-in type")));
         Type::VOID
     }
 
@@ -51,7 +51,12 @@ impl Checker<'_> {
             }
             ArrayLen::Sized(n) if n > 0 => Length::Fixed(n as u32),
             ArrayLen::Sized(n) => {
-                self.error("E0507", span, format!("an array has at least one element, not {n}"));
+                self.error(
+                    "E0507",
+                    span,
+                    format!("an array has at least one element, not {n}"),
+                    "write a length from 1 on",
+                );
                 Length::Fixed(1)
             }
         }
@@ -62,18 +67,33 @@ impl Checker<'_> {
         for field in &decl.fields {
             let ty = self.resolve_type(&field.ty, field.array);
             if fields.iter().any(|(name, _)| *name == field.name.name) {
-                self.error("E0404", field.name.span, format!("the struct has two fields `{}`", field.name.name));
+                self.error(
+                    "E0404",
+                    field.name.span,
+                    format!("the struct has two fields `{}`", field.name.name),
+                    "give one of them another name",
+                );
                 continue;
             }
             if ty.length == Length::Unsized {
-                self.error("E0507", field.name.span, "an array in a struct needs a length");
+                self.error(
+                    "E0507",
+                    field.name.span,
+                    "an array in a struct needs a length",
+                    "write the length in the brackets",
+                );
             }
             fields.push((field.name.name.clone(), ty));
         }
         let structure = Arc::new(Struct { name: decl.name.name.clone(), fields });
         let scope = self.scopes.len() - 1;
         if let Some(Symbol::Struct(_)) = self.scopes[scope].insert(decl.name.name.clone(), Symbol::Struct(structure)) {
-            self.error("E0404", decl.name.span, format!("struct `{}` is declared twice", decl.name.name));
+            self.error(
+                "E0404",
+                decl.name.span,
+                format!("struct `{}` is declared twice", decl.name.name),
+                "give one of them another name",
+            );
         }
     }
 
@@ -99,7 +119,7 @@ impl Checker<'_> {
         self.returns = saved_returns;
         self.inside = saved_inside;
         if returns != Type::VOID && !returns_somewhere(&body) {
-            let message = format!("`{}` returns a {returns}, but has no return statement", decl.name.name);
+            let message = format!("`{}` returns {}, but has no return statement", decl.name.name, returns.named());
             let diagnostic = Diagnostic::error("E0508", Span { first: decl.span.last, ..decl.span }, message)
                 .also(decl.name.span, "declared here");
             self.report(diagnostic.help("write `return value;`, or declare it `void`"));
@@ -141,7 +161,12 @@ impl Checker<'_> {
         let known = match self.scopes[scope].get(name) {
             Some(Symbol::Functions(ids)) => ids.clone(),
             Some(_) => {
-                self.error("E0404", decl.name.span, format!("`{name}` is already the name of something else"));
+                self.error(
+                    "E0404",
+                    decl.name.span,
+                    format!("`{name}` is already the name of something else"),
+                    "give the function another name",
+                );
                 Vec::new()
             }
             None => Vec::new(),
@@ -191,7 +216,7 @@ impl Checker<'_> {
         let name = &param.name;
         let open = ty.length == Length::Unsized;
         if ty.length == Length::Unsized && param.output {
-            self.error("E0507", name.span, "an output array needs a length");
+            self.error("E0507", name.span, "an output array needs a length", "write the length in the brackets");
         }
         let default = match &param.default {
             Some(value) => {

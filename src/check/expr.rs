@@ -41,7 +41,12 @@ impl Checker<'_> {
             ast::ExprKind::InitList(_) => match expected.cloned() {
                 Some(mut ty) => self.check_initial(expr, &mut ty),
                 None => {
-                    self.error("E0506", span, "an initialiser list needs a variable or a parameter to fill");
+                    self.error(
+                        "E0506",
+                        span,
+                        "an initialiser list needs a variable or a parameter to fill",
+                        "declare a variable with this value",
+                    );
                     Expr::error(span)
                 }
             },
@@ -56,7 +61,12 @@ impl Checker<'_> {
                 Expr::new(ExprKind::Var(var), self.variables[var.0 as usize].ty.clone(), span)
             }
             Some(_) => {
-                self.error("E0403", span, format!("`{name}` is not a variable"));
+                self.error(
+                    "E0403",
+                    span,
+                    format!("`{name}` is not a variable"),
+                    "a function is called with parentheses; a struct makes a value by `Name(…)`",
+                );
                 Expr::error(span)
             }
             None => {
@@ -90,7 +100,7 @@ impl Checker<'_> {
         } else if a.ty.base() == Some(Base::Closure) || b.ty.base() == Some(Base::Closure) {
             Type::CLOSURE
         } else {
-            let message = format!("the two sides of `?:` are a {} and a {}", a.ty, b.ty);
+            let message = format!("the two sides of `?:` are {} and {}", a.ty.named(), b.ty.named());
             self.report(Diagnostic::error("E0502", span, message).help("cast one of them"));
             return Expr::error(span);
         };
@@ -108,7 +118,7 @@ impl Checker<'_> {
         if cut || assignable(&to, &operand.ty) {
             return Expr::new(ExprKind::Convert(Box::new(operand)), to, span);
         }
-        self.error("E0501", span, format!("a {} cannot be cast to a {to}", operand.ty));
+        self.error("E0501", span, format!("{} cannot be cast to {}", operand.ty.named(), to.named()), "numbers cast to triples and matrices, triples to triples; stof() and format() go between numbers and strings");
         Expr::error(span)
     }
 
@@ -128,7 +138,12 @@ impl Checker<'_> {
             }
             Some(base) if base.is_triple() || base == Base::Matrix => self.construct(base, args, span),
             _ => {
-                self.error("E0510", span, format!("a {ty} cannot be made of {} values like this", args.len()));
+                self.error(
+                    "E0510",
+                    span,
+                    format!("{} cannot be made of {} values like this", ty.named(), args.len()),
+                    "give one value",
+                );
                 Expr::error(span)
             }
         }
@@ -168,7 +183,9 @@ impl Checker<'_> {
         }
         let given: Vec<String> = values.iter().map(|value| value.ty.to_string()).collect();
         let diagnostic = Diagnostic::error("E0510", span, format!("{ty}({}) cannot be constructed", given.join(", ")));
-        self.report(diagnostic.help(format!("a {ty} takes one value, {count} floats, or a space name and those")));
+        self.report(
+            diagnostic.help(format!("{} takes one value, {count} floats, or a space name and those", ty.named())),
+        );
         Expr::error(span)
     }
 
@@ -191,7 +208,12 @@ impl Checker<'_> {
             // A row of a matrix; a second index makes it an element.
             Some(Base::Matrix) => Type::FLOAT.array(Length::Fixed(4)),
             _ => {
-                self.error("E0504", span, format!("a {} has no elements", base.ty));
+                self.error(
+                    "E0504",
+                    span,
+                    format!("{} has no elements", base.ty.named()),
+                    "only arrays, triples and matrices have elements",
+                );
                 return Expr::error(span);
             }
         };
@@ -237,13 +259,16 @@ impl Checker<'_> {
         if let (Some(structure), Some(at)) = (&structure, found) {
             return Some((at as u32, structure.fields[at].1.clone()));
         }
-        let mut diagnostic = Diagnostic::error("E0505", field.span, format!("a {ty} has no field `{}`", field.name));
+        let mut diagnostic =
+            Diagnostic::error("E0505", field.span, format!("{} has no field `{}`", ty.named(), field.name));
         if let Some(base) = ty.base().filter(|base| base.is_triple()) {
             let names = if base == Base::Color { "r, g and b" } else { "x, y and z" };
             diagnostic = diagnostic.help(format!("its components are {names}"));
         } else if let Some(structure) = structure {
             let names: Vec<&str> = structure.fields.iter().map(|(name, _)| name.as_str()).collect();
             diagnostic = diagnostic.help(format!("its fields are {}", names.join(", ")));
+        } else {
+            diagnostic = diagnostic.help("only structs have fields and only triples have named components");
         }
         self.report(diagnostic);
         None

@@ -16,12 +16,17 @@ impl Checker<'_> {
         };
         let Some(Argument::In(format)) = args.get(at) else { return };
         let ExprKind::String(text) = &format.kind else {
-            self.error("E0511", format.span, "the format is a literal string");
+            self.error(
+                "E0412",
+                format.span,
+                "velour does not run formats that are computed yet",
+                "write the format as a literal string",
+            );
             return;
         };
         let kinds: Option<Vec<FormatKind>> = args[at + 1..].iter().map(format_kind).collect();
         let Some(kinds) = kinds else {
-            self.error("E0511", span, "a struct cannot be formatted; name its fields");
+            self.error("E0511", span, "a struct cannot be formatted", "name its fields, each with a `%` of its own");
             return;
         };
         if let Err(problem) = check_format(text, &kinds, at + 2) {

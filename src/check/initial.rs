@@ -51,7 +51,7 @@ impl Checker<'_> {
             (false, None) => return self.check_simple_list(items, ty, whole),
         };
         if items.len() > wanted.len() {
-            let message = format!("{} initialisers for a {ty} of {} parts", items.len(), wanted.len());
+            let message = format!("{} values for {} of {} parts", items.len(), ty.named(), wanted.len());
             self.report(Diagnostic::error("E0506", whole.span, message).help("remove the last ones"));
         }
         let mut parts: Vec<Expr> = Vec::new();
@@ -72,7 +72,12 @@ impl Checker<'_> {
                 self.convert(value, ty)
             }
             _ => {
-                self.error("E0506", whole.span, format!("a list of {} values is no {ty}", items.len()));
+                self.error(
+                    "E0506",
+                    whole.span,
+                    format!("a list of {} values is not {}", items.len(), ty.named()),
+                    "give one value",
+                );
                 Expr::error(whole.span)
             }
         };

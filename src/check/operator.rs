@@ -35,7 +35,8 @@ impl Checker<'_> {
             UnaryOp::BitNot if operand.ty == Type::INT => Type::INT,
             UnaryOp::Not if operand.ty.base().is_some_and(|b| b != Base::Void) => Type::INT,
             _ => {
-                self.error("E0502", span, format!("`{}` does not take a {}", op.symbol(), operand.ty));
+                let message = format!("`{}` does not take {}", op.symbol(), operand.ty.named());
+                self.error("E0502", span, message, ONLY_NUMBERS);
                 return Expr::error(span);
             }
         };
@@ -71,11 +72,9 @@ impl Checker<'_> {
             return call;
         }
         let Some(ty) = binary_type(op, &a.ty, &b.ty) else {
-            let message = format!("`{}` does not take a {} and a {}", op.symbol(), a.ty, b.ty);
+            let message = format!("`{}` does not take {} and {}", op.symbol(), a.ty.named(), b.ty.named());
             let mut diagnostic = Diagnostic::error("E0502", span, message);
-            if op == Mod {
-                diagnostic = diagnostic.help("`%` is for ints; use fmod() or mod() for floats");
-            }
+            diagnostic = diagnostic.help(operator_help(op, &a.ty, &b.ty));
             self.report(diagnostic);
             return Expr::error(span);
         };
@@ -162,8 +161,8 @@ impl Checker<'_> {
             }
             ExprKind::Call(..) if result.ty == ty => Expr::new(ExprKind::Assign(place, Box::new(result)), ty, span),
             _ => {
-                let message = format!("`{}=` makes a {} of a {ty}", op.symbol(), result.ty);
-                self.error("E0502", span, message);
+                let message = format!("`{}=` would turn {} into {}", op.symbol(), ty.named(), result.ty.named());
+                self.error("E0502", span, message, "store the result in a variable of its type");
                 Expr::error(span)
             }
         }
@@ -174,10 +173,32 @@ impl Checker<'_> {
         let ty = place.ty.clone();
         if !is_numeric(&ty) || ty.base() == Some(Base::Matrix) {
             let symbol = if increment { "++" } else { "--" };
-            self.error("E0502", span, format!("`{symbol}` does not take a {ty}"));
+            self.error("E0502", span, format!("`{symbol}` does not take {}", ty.named()), ONLY_NUMBERS);
             return Expr::error(span);
         }
         Expr::new(ExprKind::Step { place, increment, prefix }, ty, span)
+    }
+}
+
+const ONLY_NUMBERS: &str = "it takes numbers and triples";
+
+/// The way out when an operator does not take its operands.
+fn operator_help(op: BinaryOp, a: &Type, b: &Type) -> String {
+    use BinaryOp::*;
+    let closure = |ty: &Type| ty.base() == Some(Base::Closure);
+    let both = |base| a.base() == Some(base) && b.base() == Some(base);
+    match op {
+        Mod => "`%` is for ints; use fmod() or mod() for floats".to_owned(),
+        _ if both(Base::Closure) => "closures are added, and multiplied by a float or a color".to_owned(),
+        _ if closure(a) || closure(b) => {
+            "a closure goes with a float or a color by `*`, with a closure by `+`".to_owned()
+        }
+        _ if a.structure().is_some() || b.structure().is_some() => {
+            format!("write a function `__operator__{}__` for them", overload_word(op))
+        }
+        Add if both(Base::String) => "use concat() to join strings".to_owned(),
+        Lt | Le | Gt | Ge => "compare single numbers, or length() or luminance() of triples".to_owned(),
+        _ => "cast one of them".to_owned(),
     }
 }
 

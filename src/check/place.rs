@@ -88,7 +88,12 @@ impl Checker<'_> {
                 Some(place)
             }
             _ => {
-                self.error("E0504", whole.span, format!("a {} has no elements that can be assigned", place.ty));
+                self.error(
+                    "E0504",
+                    whole.span,
+                    format!("{} has no elements that can be assigned", place.ty.named()),
+                    "only arrays, triples and matrices have elements",
+                );
                 None
             }
         }

@@ -46,12 +46,26 @@ impl Checker<'_> {
             StmtKind::While { condition, body } => {
                 let condition = Some(self.check_condition(condition));
                 let body = self.check_loop_body(body);
-                out.push(Stmt::Loop { init: Vec::new(), condition, step: None, body, test_last: false });
+                out.push(Stmt::Loop {
+                    init: Vec::new(),
+                    condition,
+                    step: None,
+                    body,
+                    test_last: false,
+                    span: stmt.span,
+                });
             }
             StmtKind::DoWhile { body, condition } => {
                 let body = self.check_loop_body(body);
                 let condition = Some(self.check_condition(condition));
-                out.push(Stmt::Loop { init: Vec::new(), condition, step: None, body, test_last: true });
+                out.push(Stmt::Loop {
+                    init: Vec::new(),
+                    condition,
+                    step: None,
+                    body,
+                    test_last: true,
+                    span: stmt.span,
+                });
             }
             StmtKind::For { init, condition, step, body } => self.scoped(|c| {
                 let mut first = Vec::new();
@@ -59,7 +73,7 @@ impl Checker<'_> {
                 let condition = condition.as_ref().map(|condition| c.check_condition(condition));
                 let step = step.as_ref().map(|step| c.check_expr(step, None));
                 let body = c.check_loop_body(body);
-                out.push(Stmt::Loop { init: first, condition, step, body, test_last: false });
+                out.push(Stmt::Loop { init: first, condition, step, body, test_last: false, span: stmt.span });
             }),
             StmtKind::Break => self.check_jump(stmt.span, "break", Stmt::Break, out),
             StmtKind::Continue => self.check_jump(stmt.span, "continue", Stmt::Continue, out),
@@ -76,7 +90,12 @@ impl Checker<'_> {
 
     fn check_jump(&mut self, span: Span, word: &str, stmt: Stmt, out: &mut Vec<Stmt>) {
         if self.loops == 0 {
-            self.error("E0509", span, format!("`{word}` stands outside a loop"));
+            self.error(
+                "E0509",
+                span,
+                format!("`{word}` stands outside a loop"),
+                "remove it; `return` leaves a function or the shader",
+            );
         }
         out.push(stmt);
     }
@@ -87,7 +106,7 @@ impl Checker<'_> {
             (None, None) => None,
             (None, Some(ty)) if ty == Type::VOID => None,
             (None, Some(ty)) => {
-                let diagnostic = Diagnostic::error("E0508", span, format!("this function returns a {ty}"));
+                let diagnostic = Diagnostic::error("E0508", span, format!("this function returns {}", ty.named()));
                 self.report(diagnostic.help("write `return value;`"));
                 None
             }
@@ -105,7 +124,12 @@ impl Checker<'_> {
     fn check_declaration(&mut self, decl: &VarDecl, out: &mut Vec<Stmt>) {
         let mut ty = self.resolve_type(&decl.ty, decl.array);
         if ty.base() == Some(Base::Void) && !matches!(decl.ty.base, ast::TypeName::Struct(_)) {
-            self.error("E0507", decl.ty.span, format!("`{}` cannot be of type void", decl.name.name));
+            self.error(
+                "E0507",
+                decl.ty.span,
+                format!("`{}` cannot be of type void", decl.name.name),
+                "only functions can be void; give the variable a type",
+            );
         }
         let init = decl.init.as_ref().map(|init| self.check_initial(init, &mut ty));
         if ty.length == Length::Unsized {

@@ -111,6 +111,8 @@ pub enum Stmt {
         body: Vec<Stmt>,
         /// True for `do … while`.
         test_last: bool,
+        /// Where the loop stands.
+        span: Span,
     },
     /// Leaves the innermost loop.
     Break,

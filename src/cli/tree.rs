@@ -52,7 +52,7 @@ pub fn run(args: &TreeArgs) -> Result<(), Failure> {
     }
     let group = builder.build().map_err(|error| Failure::Wrong(error.to_string()))?;
     if args.program {
-        say(&crate::ir::print::program_text(group.program()));
+        say(&crate::ir::print::listing(group.program(), group.table()));
     }
     let points = point(args);
     let mut machine = Machine::new();

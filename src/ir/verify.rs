@@ -118,6 +118,7 @@ impl Walk<'_> {
                 let kind = self.program.kind(*d);
                 self.kinds(&[*c], Kind::Int).and(self.kinds(&[*a, *b], kind))
             }
+            Instr::Move { dst, src, .. } if dst == src => Err(format!("r{} is moved to itself", dst.0)),
             Instr::Move { dst, src, .. } => self.kinds(&[*src], self.program.kind(*dst)),
             Instr::ClosureAdd(d, a, b) => self.kinds(&[*d, *a, *b], Kind::Closure),
             Instr::ClosureScale(d, a, w) => self.kinds(&[*d, *a], Kind::Closure).and(self.kinds(w, Kind::Float)),

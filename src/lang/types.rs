@@ -162,6 +162,12 @@ impl Type {
         }
     }
 
+    /// The type with its article: `an int`, `a float[3]`.
+    pub fn named(&self) -> String {
+        let article = if self.element == Element::Base(Base::Int) { "an" } else { "a" };
+        format!("{article} {self}")
+    }
+
     /// The struct when the element is one.
     pub fn structure(&self) -> Option<&Arc<Struct>> {
         match &self.element {

@@ -109,7 +109,6 @@ fn rough_mirrors_lose_what_single_scattering_loses() {
 }
 
 #[test]
-#[ignore = "a reflection sample that falls below the horizon is weighed as a refraction, which gains light inside glass"]
 fn rough_glass_gains_none() {
     for distribution in ["ggx", "beckmann"] {
         let eta = "float e = backfacing() ? 1 / 1.5 : 1.5;";

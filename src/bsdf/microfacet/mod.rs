@@ -100,7 +100,11 @@ impl<const BECKMANN: bool, const REFRACT: bool> Scatter for Microfacet<BECKMANN,
     #[inline(always)]
     fn sample_from(&self, wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
         let m = distributions::sample_visible(wo, self.widths, xi.x, xi.y);
-        if REFRACT { refracted(wo, m, self.eta) } else { m * (2.0 * wo.dot(m)) - wo }
+        let wi = if REFRACT { refracted(wo, m, self.eta) } else { m * (2.0 * wo.dot(m)) - wo };
+        // A direction on the wrong side is lost. It must not be kept for the other half of the boundary, which could
+        // have found it with some other density: that would weigh it far too much.
+        let lost = if REFRACT { wi.z >= 0.0 } else { wi.z <= 0.0 };
+        if lost { Vec3::ZERO } else { wi }
     }
 
     #[inline(always)]

@@ -8,6 +8,8 @@ use std::collections::{BTreeSet, HashMap};
 pub struct Effects {
     /// Variables it assigns, those of called functions included.
     pub vars: BTreeSet<VarId>,
+    /// Variables it declares, those of called functions included; they end with it.
+    pub declared: BTreeSet<VarId>,
     /// True when it prints or reports.
     pub prints: bool,
     /// True when it can call `exit()`.
@@ -53,6 +55,7 @@ impl Assigned {
         }
         let mut effects = self.of_stmts(shader, &shader.functions[id.0 as usize].body);
         effects.returns = false;
+        effects.declared.extend(shader.functions[id.0 as usize].params.iter().map(|param| param.0));
         self.functions.insert(id, effects.clone());
         effects
     }
@@ -63,6 +66,7 @@ impl Assigned {
                 Stmt::Expr(expr) => self.expr(shader, expr, out),
                 Stmt::Declare(var, init) => {
                     out.vars.insert(*var);
+                    out.declared.insert(*var);
                     init.iter().for_each(|init| self.expr(shader, init, out));
                 }
                 Stmt::Block(body) => self.stmts(shader, body, out),
@@ -139,6 +143,7 @@ impl Assigned {
                 self.args(shader, args, out);
                 let callee = self.of_function(shader, *id);
                 out.vars.extend(callee.vars);
+                out.declared.extend(callee.declared);
                 out.prints |= callee.prints;
                 out.exits |= callee.exits;
             }

@@ -7,6 +7,7 @@ use super::{Frame, Lower};
 use crate::check::typed::*;
 use crate::ir::program::{Node, Reg};
 use crate::lang::types::Type;
+use velour_grammar::Span;
 
 impl Lower<'_> {
     pub(super) fn stmts(&mut self, stmts: &[Stmt]) {
@@ -33,9 +34,10 @@ impl Lower<'_> {
             }
             Stmt::Block(body) => self.stmts(body),
             Stmt::If(condition, then, otherwise) => self.if_stmt(condition, then, otherwise),
-            Stmt::Loop { init, condition, step, body, test_last } => {
+            Stmt::Loop { init, condition, step, body, test_last, span } => {
                 self.stmts(init);
-                self.loop_stmt(condition.as_ref(), step.as_ref(), body, *test_last);
+                let tested = (condition.as_ref(), *test_last);
+                self.loop_stmt(tested, step.as_ref(), body, *span);
             }
             Stmt::Break => {
                 if let Some(&(scope, _)) = self.loops.last() {
@@ -84,13 +86,14 @@ impl Lower<'_> {
         if mutable { self.b.copy(reg, false) } else { reg }
     }
 
-    fn loop_stmt(&mut self, condition: Option<&Expr>, step: Option<&Expr>, body: &[Stmt], test_last: bool) {
+    fn loop_stmt(&mut self, tested: (Option<&Expr>, bool), step: Option<&Expr>, body: &[Stmt], span: Span) {
+        let (condition, test_last) = tested;
         let mut effects = Effects::default();
         self.effects(body, &mut effects);
         for expr in condition.into_iter().chain(step) {
             effects.vars.extend(self.assigned.of_expr(self.shader, expr).vars);
         }
-        let span = condition.map_or(self.span, |c| self.placed(c.span));
+        let span = self.placed(span);
         let (leave, next) = (self.b.scope(), self.b.scope());
         self.region(effects.vars.into_iter().collect(), |l| {
             l.loops.push((leave, next));
@@ -177,6 +180,10 @@ impl Lower<'_> {
                 let value = self.stable(&bound.value);
                 self.write(&target, &value);
             }
+        }
+        // What the function declared is gone; left bound, a later region would keep the registers of this call alive.
+        for var in self.assigned.of_function(self.shader, id).declared {
+            self.vars[var.0 as usize] = None;
         }
         result
     }
