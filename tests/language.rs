@@ -1,5 +1,6 @@
 //! Shader text in, printed text out: one line a case.
 
+use velour::closure::print::tree_text;
 use velour::compile::Compiler;
 use velour::exec::{Machine, Points, Report};
 
@@ -418,4 +419,38 @@ fn parameters_and_layers() {
     assert_eq!(shade(&group), "Output(\"4 5 4 4 4 3 00 \")Output(\"4 5 4 4 4 3 00 \")");
     assert!(builder().layer("b", &second).param("nosuch", &[4.0]).build().is_err());
     assert!(builder().layer("b", &second).strings("x", &["a"]).build().is_err());
+}
+
+#[test]
+fn closures_of_one_batch_do_not_reach_the_next() {
+    let text = "surface s() {
+        if (v > 0.5) { Ci = diffuse(N); for (int i = 0; i < 20; ++i) Ci += 0.1 * diffuse(N); Ci = 0; }
+        if (fmod(u * 64, 2) > 1) { closure color a[2] = {0.5 * diffuse(N), 0.5 * diffuse(N)}; Ci = a[0] + a[1]; }
+    }";
+    let shader = Compiler::new().compile("test.osl", text).unwrap();
+    let group = shader.group().build().unwrap();
+    let mut machine = Machine::new();
+    for v in [1.0, 0.0] {
+        let mut points = Points::new(4);
+        points.v.fill(v);
+        points.u = vec![0.0, 1.5 / 64.0, 0.0, 1.5 / 64.0];
+        let tree = machine.shade(&group, &points);
+        assert!(tree.root.is_none_or(|root| (root.0 as usize) < tree.nodes.len()));
+        let texts: Vec<bool> = (0..4).map(|lane| tree_text(group.table(), tree, lane).is_empty()).collect();
+        assert_eq!(texts, [true, false, true, false]);
+    }
+}
+
+#[test]
+fn the_number_of_knots_may_vary() {
+    let text = "shader s() {
+        float k[8] = {0, 1, 2, 3, 9, 9, 9, 9};
+        int n = 4 + (int)(u * 0.1);
+        printf(\"%g %g\\n\", spline(\"linear\", 0.5, n, k), spline(\"linear\", 0.5, 4, k));
+    }";
+    let shader = Compiler::new().compile("test.osl", text).unwrap();
+    let group = shader.group().build().unwrap();
+    let mut machine = Machine::new();
+    machine.shade(&group, &Points::new(1));
+    assert_eq!(machine.take_reports(), [Report::Output("1.5 1.5\n".to_owned())]);
 }

@@ -89,7 +89,7 @@ impl Run<'_> {
     fn closure_array_get(&mut self, dst: Reg, array: ArrayId, index: Reg, span: Span) {
         let info = self.group.program.arrays[array.0 as usize];
         if self.regs.i(index).len() == 1 {
-            let element = self.checked(index, 0, info.len, span);
+            let element = self.checked(index, self.first_active(), info.len, span);
             self.regs.closures[dst.0 as usize] = self.regs.closure_arrays[array.0 as usize][element];
             return;
         }

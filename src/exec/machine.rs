@@ -98,6 +98,7 @@ impl Machine {
         let n = points.len;
         let regs = self.files.entry(group.id).or_default();
         regs.prepare(group, n);
+        regs.forget_closures();
         self.tree.clear(n);
         for &(reg, input) in group.inputs() {
             regs.load(reg, input, points);
@@ -164,6 +165,12 @@ impl Scratch {
 }
 
 impl Registers {
+    /// Drops the closures of the batch before: their nodes are gone with its tree.
+    fn forget_closures(&mut self) {
+        self.closures.fill(None);
+        self.closure_arrays.iter_mut().for_each(|array| array.fill(None));
+    }
+
     /// Makes room for a batch and sets the constants; costs nothing when the width stays the same.
     fn prepare(&mut self, group: &Group, n: usize) {
         let program = &*group.program;

@@ -34,6 +34,11 @@ impl Lane<'_> {
         Symbol(self.i(at)).text()
     }
 
+    /// How many knots of a spline count: as many as asked for, and as there are.
+    fn knots(&self) -> usize {
+        (self.i(2).max(0) as usize).min(self.src.len() - 3)
+    }
+
     fn triple(&self, at: usize) -> [f32; 3] {
         [self.f(at), self.f(at + 1), self.f(at + 2)]
     }
@@ -171,16 +176,13 @@ fn fits(value: &Attribute, ty: AttributeType) -> bool {
 fn compute(routine: &Routine, a: &Lane, floats: &mut [f32; 16], ints: &mut [i32]) -> bool {
     match routine {
         Routine::Spline => {
-            let (basis, count) = (Basis::from_name(a.s(0)), a.src.len() - 2);
-            floats[0] = spline::spline(basis, a.f(1), count, |i| a.f(2 + i));
-            floats[1] = spline::spline_slope(basis, a.f(1), count, |i| a.f(2 + i));
+            let (basis, count) = (Basis::from_name(a.s(0)), a.knots());
+            floats[0] = spline::spline(basis, a.f(1), count, |i| a.f(3 + i));
+            floats[1] = spline::spline_slope(basis, a.f(1), count, |i| a.f(3 + i));
         }
         Routine::SplineInverse => {
-            let knots: Vec<f32> = (2..a.src.len()).map(|i| a.f(i)).collect();
-            let basis = Basis::from_name(a.s(0));
-            floats[0] = spline::splineinverse(basis, a.f(1), &knots);
-            let slope = spline::spline_slope(basis, floats[0], knots.len(), |i| knots[i]);
-            floats[1] = crate::ops::arithmetic::div(1.0, slope);
+            let knots: Vec<f32> = (0..a.knots()).map(|i| a.f(3 + i)).collect();
+            floats[0] = spline::splineinverse(Basis::from_name(a.s(0)), a.f(1), &knots);
         }
         Routine::MatrixInverse => *floats = matrix::inverse(&a.matrix()),
         Routine::Determinant => floats[0] = matrix::determinant(&a.matrix()),

@@ -181,7 +181,7 @@ pub struct Noise {
 pub enum Routine {
     /// Noise.
     Noise(Noise),
-    /// `spline`: basis symbol, x, then knots of one component; gives the value, and its slope in x.
+    /// `spline`: basis symbol, x, how many knots count, then knots of one component; gives the value, and its slope in x.
     Spline,
     /// `splineinverse`: basis symbol, value, knots; gives the place, and its slope in the value.
     SplineInverse,

@@ -47,12 +47,6 @@ pub fn fmod(a: f32, b: f32) -> f32 {
     if b == 0.0 { 0.0 } else { r }
 }
 
-/// The partial derivative of [`fmod`] with respect to `b`; with respect to `a` it is 1.
-#[inline(always)]
-pub fn fmod_slope_b(a: f32, b: f32) -> f32 {
-    -e::trunc(div(a, b))
-}
-
 /// Square root; 0 below 0.
 #[inline(always)]
 pub fn sqrt(x: f32) -> f32 {
@@ -109,13 +103,6 @@ pub fn pow(x: f32, y: f32) -> f32 {
     if y == 0.0 { 1.0 } else { p }
 }
 
-/// The partial derivatives of [`pow`]: y x^(y-1) and x^y ln x; the latter is 0 for x <= 0.
-#[inline(always)]
-pub fn pow_slopes(x: f32, y: f32) -> (f32, f32) {
-    let by_y = pow(x, y) * log(x);
-    (y * pow(x, y - 1.0), if x > 0.0 { by_y } else { 0.0 })
-}
-
 /// Arc sine; arguments outside [-1, 1] count as the nearest end.
 #[inline(always)]
 pub fn asin(x: f32) -> f32 {
@@ -130,12 +117,6 @@ pub fn acos(x: f32) -> f32 {
     let inside = e::acos(x);
     let inside = if x >= 1.0 { 0.0 } else { inside };
     if x <= -1.0 { PI } else { inside }
-}
-
-/// The derivative of [`asin`], 1 / sqrt(1 - x^2), and 0 outside (-1, 1); that of [`acos`] is its negative.
-#[inline(always)]
-pub fn asin_slope(x: f32) -> f32 {
-    inversesqrt(1.0 - x * x)
 }
 
 /// -1, 0 or 1 by the sign of `x`; 1 for NaN, as OSL's comparisons have it.
@@ -165,49 +146,10 @@ pub fn max(x: f32, y: f32) -> f32 {
     if x > y { x } else { y }
 }
 
-/// Limits `x` to an interval; the lower end wins when they are crossed.
-#[inline(always)]
-pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
-    max(min(x, high), low)
-}
-
-/// x (1 - a) + y a.
-#[inline(always)]
-pub fn mix(x: f32, y: f32, a: f32) -> f32 {
-    x * (1.0 - a) + y * a
-}
-
 /// 0 below the edge, else 1.
 #[inline(always)]
 pub fn step(edge: f32, x: f32) -> f32 {
     if x < edge { 0.0 } else { 1.0 }
-}
-
-/// A straight ramp from 0 at the first edge to 1 at the second; a step when they coincide.
-#[inline(always)]
-pub fn linearstep(edge0: f32, edge1: f32, x: f32) -> f32 {
-    let ramp = clamp(div(x - edge0, edge1 - edge0), 0.0, 1.0);
-    let hard = step(edge0, x);
-    if edge0 != edge1 { ramp } else { hard }
-}
-
-/// 0 below the first edge, 1 from the second on, and Hermite's cubic 3t^2 - 2t^3 between.
-#[inline(always)]
-pub fn smoothstep(edge0: f32, edge1: f32, x: f32) -> f32 {
-    let t = (x - edge0) / (edge1 - edge0);
-    let cubic = (3.0 - 2.0 * t) * (t * t);
-    let value = if x >= edge1 { 1.0 } else { cubic };
-    if x < edge0 { 0.0 } else { value }
-}
-
-/// The partial derivatives of [`smoothstep`] with respect to the first edge, the second edge and `x`.
-#[inline(always)]
-pub fn smoothstep_slopes(edge0: f32, edge1: f32, x: f32) -> (f32, f32, f32) {
-    let inside = (x >= edge0) & (x < edge1);
-    let inverse = if inside { 1.0 / (edge1 - edge0) } else { 0.0 };
-    let t = (x - edge0) * inverse;
-    let by_x = 6.0 * t * (1.0 - t) * inverse;
-    (by_x * (t - 1.0), -by_x * t, by_x)
 }
 
 #[cfg(test)]
@@ -258,8 +200,6 @@ mod tests {
         assert_eq!(pow(-2.0, 3.0), -8.0);
         assert_eq!(pow(10.0, 50.0), f32::MAX);
         assert_eq!(pow(-10.0, 51.0), -f32::MAX);
-        let (by_x, by_y) = pow_slopes(2.0, 3.0);
-        assert!((by_x - 12.0).abs() < 1e-5 && (by_y - 8.0 * 2f32.ln()).abs() < 1e-5);
     }
 
     #[test]
@@ -268,8 +208,6 @@ mod tests {
         assert_eq!(asin(-2.0), -FRAC_PI_2);
         assert_eq!(acos(1.5), 0.0);
         assert_eq!(acos(-1.5), PI);
-        assert_eq!(asin_slope(0.0), 1.0);
-        assert_eq!(asin_slope(2.0), 0.0);
     }
 
     #[test]
@@ -277,7 +215,6 @@ mod tests {
         assert_eq!(min(f32::NAN, 1.0), 1.0);
         assert!(min(1.0, f32::NAN).is_nan());
         assert_eq!(max(f32::NAN, 1.0), 1.0);
-        assert_eq!(clamp(5.0, 2.0, 1.0), 2.0);
         assert_eq!(sign(f32::NAN), 1.0);
         assert_eq!(sign(-0.0), 0.0);
         assert_eq!(to_int(-2.9), -2);
@@ -288,15 +225,5 @@ mod tests {
     #[test]
     fn steps_meet_their_edges() {
         assert_eq!(step(1.0, 1.0), 1.0);
-        assert_eq!(smoothstep(0.0, 2.0, 1.0), 0.5);
-        assert_eq!(smoothstep(1.0, 1.0, 1.0), 1.0);
-        assert_eq!(smoothstep(1.0, 1.0, 0.9), 0.0);
-        assert_eq!(linearstep(1.0, 3.0, 1.5), 0.25);
-        assert_eq!(linearstep(1.0, 1.0, 1.0), 1.0);
-        let (a, b, c) = smoothstep_slopes(1.0, 3.0, 1.8);
-        let near = |x: f32, y: f32| (x - y).abs() < 2e-3;
-        assert!(near(c, (smoothstep(1.0, 3.0, 1.801) - smoothstep(1.0, 3.0, 1.799)) / 0.002));
-        assert!(near(a, (smoothstep(1.001, 3.0, 1.8) - smoothstep(0.999, 3.0, 1.8)) / 0.002));
-        assert!(near(b, (smoothstep(1.0, 3.001, 1.8) - smoothstep(1.0, 2.999, 1.8)) / 0.002));
     }
 }

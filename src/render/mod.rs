@@ -118,6 +118,9 @@ fn store(pixels: &mut [f32], tile: &Tile, settings: &Settings, channels: usize, 
 }
 
 /// Each report once, in an order that does not depend on threads.
+///
+/// Differs from OSL: what shaders print while rendering comes out sorted and each text once, since lanes, tiles and
+/// threads have no order of their own. `velour tree` prints as written.
 fn reports(scene: &Scene, mut reports: Vec<Report>, dropped: &Dropped) -> Vec<Report> {
     reports.sort_by_key(|report| format!("{report:?}"));
     reports.dedup();

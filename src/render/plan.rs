@@ -93,10 +93,8 @@ impl Plan {
                 needs: Needs::of(&m.surface),
             })
             .collect();
-        let is_light = |material: u32| {
-            let (plan, material) = (materials[material as usize], &scene.materials[material as usize]);
-            plan.emits || material.is_light
-        };
+        // `is_light` only asks; what cannot emit is no light whatever the scene says.
+        let is_light = |material: u32| materials[material as usize].emits;
         let sampling = settings.lights != LightStrategy::ScatteringOnly;
         let objects = &scene.geometry.objects;
         let lit = |p: &&crate::scene::Primitive| is_light(objects[p.object as usize].material);

@@ -110,11 +110,12 @@ fn rough_mirrors_lose_what_single_scattering_loses() {
 
 #[test]
 fn rough_glass_gains_none() {
+    // What is scattered twice by one boundary is lost, most of it inside, close to the critical angle.
     for distribution in ["ggx", "beckmann"] {
         let eta = "float e = backfacing() ? 1 / 1.5 : 1.5;";
         let shader = format!("surface it() {{ {eta} Ci = microfacet(\"{distribution}\", N, 0.3, e, 2); }}");
         let mean = over_sphere(&furnace(&shader, |_| ()));
-        assert!((0.8..=1.0 + 1e-3).contains(&mean), "{distribution}: {mean}");
+        assert!((0.6..=1.0 + 1e-3).contains(&mean), "{distribution}: {mean}");
     }
 }
 

@@ -89,13 +89,6 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
         let value = d / denominator.max(1e-30);
         select(co > 0.0 && ci > 0.0, value, 0.0)
     }
-
-    /// The same lobe with another share of uniform samples: 1 is the sampling of the paper.
-    #[inline(always)]
-    pub fn with_uniform_share(mut self, share: f32) -> Self {
-        self.proposal.uniform_share = share;
-        self
-    }
 }
 
 impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {

@@ -26,7 +26,7 @@ impl Lower<'_> {
                 }
                 return Value::Regs(Vec::new());
             }
-            "spline" | "splineinverse" => return self.spline(name, args),
+            "spline" | "splineinverse" => return self.spline(name, args, call),
             _ => {}
         }
         if let Some(noise) = self.noise_call(name, args, call) {
@@ -241,24 +241,24 @@ impl Lower<'_> {
         self.stands_for.get(&var).copied().unwrap_or(var)
     }
 
-    fn spline(&mut self, name: &str, args: &[Argument]) -> Value {
+    fn spline(&mut self, name: &str, args: &[Argument], call: &Expr) -> Value {
         let exprs: Vec<&Expr> =
             args.iter().filter_map(|a| if let Argument::In(e) = a { Some(e) } else { None }).collect();
         let (basis, x) = (self.reg(exprs[0]), self.reg(exprs[1]));
+        let (basis, x) = (self.fixed(basis), self.fixed(x));
+        let count = (exprs.len() == 4).then(|| self.reg(exprs[2]));
         let array = self.expr(exprs[exprs.len() - 1]);
-        let mut knots = self.elements(&array);
-        if exprs.len() == 4 {
-            let count = self.reg(exprs[2]);
-            let count = self.b.known_int(count).unwrap_or(knots.len() as i32);
-            knots.truncate(count.max(0) as usize);
-        }
-        let knots: Vec<Vec<Reg>> = knots.iter().map(|knot| self.regs(knot)).collect();
-        let components = knots.first().map_or(1, Vec::len);
+        let knots: Vec<Vec<Reg>> = self.elements(&array).iter().map(|knot| self.regs(knot)).collect();
+        let count = count.unwrap_or_else(|| self.b.int(knots.len() as i32));
+        let components = call.ty.base().map_or(1, Base::floats);
         let mut out = Vec::new();
         for c in 0..components {
-            let src: Vec<Reg> = [basis, x].into_iter().chain(knots.iter().map(|knot| knot[c])).collect();
-            let routine = if name == "spline" { Routine::Spline } else { Routine::SplineInverse };
-            out.push(self.b.call(routine, &[Kind::Float, Kind::Float], src, self.span)[0]);
+            let src: Vec<Reg> = [basis, x, count].into_iter().chain(knots.iter().map(|knot| knot[c])).collect();
+            let (routine, kinds): (_, &[Kind]) = match name {
+                "spline" => (Routine::Spline, &[Kind::Float, Kind::Float]),
+                _ => (Routine::SplineInverse, &[Kind::Float]),
+            };
+            out.push(self.b.call(routine, kinds, src, self.span)[0]);
         }
         Value::Regs(out)
     }
