@@ -11,13 +11,13 @@ use velour::ir::verify::verify;
 const SEED: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// How many programs are made up.
-const PROGRAMS: u64 = 40;
+const PROGRAMS: u64 = 200;
 
 /// Batch widths: one lane, a few, the default, and one that is no multiple of a vector.
 const WIDTHS: [usize; 4] = [1, 8, 128, 100];
 
 /// Points in all; a prime, so that no width divides them.
-const POINTS: usize = 37;
+const POINTS: usize = 131;
 
 fn points(first: usize, len: usize) -> Points {
     let mut points = Points::new(len);

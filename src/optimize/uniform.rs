@@ -10,6 +10,19 @@ struct Walk {
     varying: Vec<bool>,
     varying_arrays: Vec<bool>,
     changed: bool,
+    /// The scopes that some lanes have left by the end of each loop, in the order of the walk.
+    behind: Vec<Vec<ScopeId>>,
+    /// How many loops this walk has met.
+    loops: usize,
+}
+
+/// Adds the scopes that are not there yet.
+fn join(left: &mut Vec<ScopeId>, more: &[ScopeId]) {
+    for scope in more {
+        if !left.contains(scope) {
+            left.push(*scope);
+        }
+    }
 }
 
 /// Sets the uniform flags of registers and arrays and the masked flags of moves.
@@ -17,9 +30,15 @@ pub fn mark(program: &mut Program, find_uniform: bool) {
     let inputs = program.regs.iter().map(|info| matches!(info.source, Source::Input(_)) || !find_uniform);
     let constant = |info: &RegInfo| matches!(info.source, Source::Const(_));
     let varying = inputs.zip(&program.regs).map(|(varying, info)| varying && !constant(info)).collect();
-    let mut walk = Walk { varying, varying_arrays: vec![!find_uniform; program.arrays.len()], changed: true };
+    let mut walk = Walk {
+        varying,
+        varying_arrays: vec![!find_uniform; program.arrays.len()],
+        changed: true,
+        behind: Vec::new(),
+        loops: 0,
+    };
     while walk.changed {
-        walk.changed = false;
+        (walk.changed, walk.loops) = (false, 0);
         walk.block(&mut program.body, false, &mut Vec::new());
     }
     for (info, &varying) in program.regs.iter_mut().zip(&walk.varying) {
@@ -52,19 +71,24 @@ impl Walk {
                     let mut left_b = left.clone();
                     self.block(a, masked, left);
                     self.block(b, masked, &mut left_b);
-                    left.extend(left_b);
-                    left.dedup();
+                    join(left, &left_b);
                 }
                 Node::Loop { head, condition, body, .. } => {
-                    // What a round leaves behind holds for the next one, so the loop is walked with it known.
-                    let mut after = left.clone();
-                    let masked = masked || self.varies(*condition);
-                    self.block(head, masked, &mut after);
-                    self.block(body, masked, &mut after);
-                    let masked = masked || self.varies(*condition) || !after.is_empty();
-                    self.block(head, masked, &mut after);
-                    self.block(body, masked, &mut after);
-                    *left = after;
+                    // What a round leaves behind holds for the next one. It is remembered from walk to walk, as walking
+                    // a loop twice here would double the work with every level of nesting.
+                    let number = self.loops;
+                    self.loops += 1;
+                    if self.behind.len() <= number {
+                        self.behind.push(Vec::new());
+                    }
+                    join(left, &self.behind[number]);
+                    let masked = masked || self.varies(*condition) || !left.is_empty();
+                    self.block(head, masked, left);
+                    self.block(body, masked || self.varies(*condition), left);
+                    if left.iter().any(|scope| !self.behind[number].contains(scope)) {
+                        join(&mut self.behind[number], left);
+                        self.changed = true;
+                    }
                 }
                 Node::Scope(id, body) => {
                     self.block(body, masked, left);
@@ -73,7 +97,7 @@ impl Walk {
                 // Where all lanes are active they leave together, and what follows is skipped.
                 Node::Leave(scope) => {
                     if masked {
-                        left.push(*scope);
+                        join(left, &[*scope]);
                     }
                 }
             }

@@ -17,7 +17,7 @@ pub fn expand(program: &mut Program) {
         Needs { regs: vec![false; program.regs.len()], arrays: vec![false; program.arrays.len()], changed: true };
     while needs.changed {
         needs.changed = false;
-        visit_instrs(&program.body, &mut |instr| needs.instr(instr));
+        needs.block(&program.body);
     }
     if !needs.regs.contains(&true) && !has_derivatives(&program.body) {
         return;
@@ -42,6 +42,25 @@ struct Needs {
 }
 
 impl Needs {
+    /// Walks from the last instruction to the first, so that one walk does for straight code.
+    fn block(&mut self, block: &Block) {
+        for node in block.iter().rev() {
+            match node {
+                Node::Instr(instr) => self.instr(instr),
+                Node::If(_, a, b) => {
+                    self.block(b);
+                    self.block(a);
+                }
+                Node::Loop { head, body, .. } => {
+                    self.block(body);
+                    self.block(head);
+                }
+                Node::Scope(_, body) => self.block(body),
+                Node::Leave(_) => {}
+            }
+        }
+    }
+
     fn mark(&mut self, reg: Reg) {
         let slot = &mut self.regs[reg.0 as usize];
         self.changed |= !*slot;
