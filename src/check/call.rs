@@ -1,23 +1,20 @@
-//! Calls: overloads of user functions, builtins, closures and struct constructors.
-//!
-//! Overloads are ranked as OSL ranks them: an exact argument counts most, then int to float, array length, triple to
-//! triple, and any other conversion; the sums are compared, and a tie goes to the best return type.
+//! Calls: what a name may mean, and the checked call of what fits best.
 
-use super::context::{Checker, Symbol};
-use super::convert::{assignable, is_number};
+use super::context::{Checker, Signature, Symbol};
 use super::expr::nearest;
+use super::rank::{better_overload, rank_type, same_storage, score_type};
 use super::typed::{Argument, Expr, ExprKind, FunctionId};
-use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
-use crate::lang::closures::{ClosureId, ClosureSpec, ParamKind, ParamSpec};
+use crate::lang::builtins::{self, Formal, NOT_YET};
+use crate::lang::closures::{ClosureId, Model, ParamKind, ParamSpec};
 use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{self, Ident};
-use velour_grammar::{Diagnostic, Severity, Span};
+use velour_grammar::{Diagnostic, Span};
 
 /// Something a call may mean.
 #[derive(Clone)]
-enum Candidate {
+pub(super) enum Candidate {
     User(FunctionId),
-    Builtin(&'static str, &'static Signature),
+    Builtin(&'static str, &'static builtins::Signature),
     Closure(ClosureId),
 }
 
@@ -202,59 +199,6 @@ impl Checker<'_> {
         }
     }
 
-    fn score(&mut self, candidate: &Candidate, lists: &[ast::Expr], args: &[Expr]) -> Option<u32> {
-        let formals: Vec<Type> = match candidate {
-            Candidate::User(id) => {
-                let formals = &self.signatures[id.0 as usize].formals;
-                if formals.len() != args.len() {
-                    return None;
-                }
-                formals.iter().map(|(ty, _)| ty.clone()).collect()
-            }
-            Candidate::Builtin(_, signature) => {
-                return score_builtin(signature, args).filter(|_| self.lists_fit_builtin(signature, lists));
-            }
-            Candidate::Closure(id) => return score_closure(self.closures.get(*id), args),
-        };
-        // An empty argument list fits exactly; one more keeps it above "no score".
-        let mut sum = 1;
-        for ((ty, arg), list) in formals.iter().zip(args).zip(lists) {
-            sum += score_argument(ty, arg)?;
-            if matches!(list.kind, ast::ExprKind::InitList(_)) && !self.list_fits(list, ty) {
-                return None;
-            }
-        }
-        Some(sum)
-    }
-
-    fn lists_fit_builtin(&mut self, signature: &Signature, args: &[ast::Expr]) -> bool {
-        signature.formals.iter().zip(args).all(|((formal, _), arg)| match (formal, &arg.kind) {
-            (Formal::Type(ty), ast::ExprKind::InitList(_)) => self.list_fits(arg, ty),
-            (_, ast::ExprKind::InitList(_)) => false,
-            _ => true,
-        })
-    }
-
-    /// Tries an initialiser list for a type and takes back whatever was said about it. A list that leaves parts out fits
-    /// none of several candidates: it would fit too many.
-    fn list_fits(&mut self, list: &ast::Expr, ty: &Type) -> bool {
-        let ast::ExprKind::InitList(items) = &list.kind else { return false };
-        let wanted = match ty.structure() {
-            Some(structure) if !ty.is_array() => structure.fields.len(),
-            _ if ty.length == Length::Unsized => items.len(),
-            _ if ty.is_array() => ty.count(),
-            _ => ty.base().map_or(1, |base| base.components().max(1)),
-        };
-        if items.len() != wanted {
-            return false;
-        }
-        let said = self.diagnostics.list.len();
-        self.check_initial(list, &mut ty.clone());
-        let fits = self.diagnostics.list[said..].iter().all(|d| d.severity == Severity::Warning);
-        self.diagnostics.list.truncate(said);
-        fits
-    }
-
     fn call_user(&mut self, id: FunctionId, args: &[ast::Expr], values: Vec<Expr>, span: Span) -> Expr {
         let signature = &self.signatures[id.0 as usize];
         let (returns, formals) = (signature.returns.clone(), signature.formals.clone());
@@ -267,10 +211,7 @@ impl Checker<'_> {
             } else if matches!(arg.kind, ast::ExprKind::InitList(_)) {
                 arguments.push(Argument::In(self.check_initial(arg, &mut ty.clone())));
             } else {
-                // The type wanted may choose between overloads inside the argument.
-                let again = matches!(value.kind, ExprKind::Builtin(..)) && value.ty != *ty;
-                let value = if again { self.check_expr(arg, Some(ty)) } else { value };
-                arguments.push(Argument::In(self.convert(value, ty)));
+                arguments.push(Argument::In(self.convert(better_overload(value, ty), ty)));
             }
         }
         Expr::new(ExprKind::Call(id, arguments), returns, span)
@@ -279,7 +220,7 @@ impl Checker<'_> {
     fn call_builtin(
         &mut self,
         name: &'static str,
-        signature: &'static Signature,
+        signature: &'static builtins::Signature,
         args: &[ast::Expr],
         values: Vec<Expr>,
         span: Span,
@@ -360,13 +301,39 @@ impl Checker<'_> {
                 let choices = spec.keywords[at].choices.join("\", \"");
                 self.report(Diagnostic::error("E0411", value.span, message).help(format!("choose \"{choices}\"")));
             }
+            if let (Model::SheenBsdf, "mode", ExprKind::Int(mode @ (..=-1 | 1..))) =
+                (spec.model, word.as_str(), &value.kind)
+            {
+                let message = format!("velour does not run `{}` with \"mode\" {mode} yet", spec.name);
+                let diagnostic = Diagnostic::error("E0412", value.span, message);
+                self.report(diagnostic.help("mode 0 is the model velour runs, and the default"));
+            }
             let value = self.convert(value, &param_type(spec.keywords[at].kind));
             keywords.push((at as u32, value));
         }
         Expr::new(ExprKind::Closure(id, params, keywords), Type::CLOSURE, span)
     }
 
+    /// The message for a call of one function whose only fault is the type of a variable that it writes.
+    fn wrong_output(&self, candidates: &[Candidate], args: &[Expr]) -> Option<Diagnostic> {
+        let [Candidate::User(id)] = candidates else { return None };
+        let Signature { name, formals, span, .. } = &self.signatures[id.0 as usize];
+        let listed = args.iter().any(|arg| arg.ty == Type::VOID);
+        if formals.len() != args.len() || listed {
+            return None;
+        }
+        let wrong = |((ty, output), arg): &(&(Type, bool), &Expr)| *output && !same_storage(ty, &arg.ty);
+        let ((ty, _), arg) = formals.iter().zip(args).find(wrong)?;
+        let message =
+            format!("`{name}` writes this argument: {} is needed here, this is {}", ty.named(), arg.ty.named());
+        let diagnostic = Diagnostic::error("E0406", arg.span, message).also(*span, "declared here");
+        Some(diagnostic.help(format!("give a variable of type {ty}, and copy it afterwards")))
+    }
+
     fn no_match(&mut self, name: &Ident, candidates: &[Candidate], args: &[Expr], span: Span) {
+        if let Some(diagnostic) = self.wrong_output(candidates, args) {
+            return self.report(diagnostic);
+        }
         let listed = matches!(args.first(), Some(arg) if arg.ty == Type::VOID);
         let given: Vec<String> = args.iter().map(|arg| arg.ty.to_string()).collect();
         let given = if listed { "a list".to_owned() } else { given.join(", ") };
@@ -424,79 +391,4 @@ pub(super) fn param_type(kind: ParamKind) -> Type {
         ParamKind::String => Base::String,
         ParamKind::Closure => Base::Closure,
     })
-}
-
-fn score_argument(formal: &Type, arg: &Expr) -> Option<u32> {
-    let list = arg.ty == Type::VOID && matches!(arg.kind, ExprKind::Int(1));
-    let null = formal.base() == Some(Base::Closure) && matches!(arg.kind, ExprKind::Int(0));
-    if list || null {
-        return Some(1);
-    }
-    score_type(formal, &arg.ty)
-}
-
-/// How well a value of type `actual` fits a formal of type `formal`.
-pub(super) fn score_type(formal: &Type, actual: &Type) -> Option<u32> {
-    if formal == actual {
-        return Some(100);
-    }
-    if is_number(formal) && is_number(actual) {
-        return (formal.base() == Some(Base::Float)).then_some(77);
-    }
-    if formal.length == Length::Unsized && actual.is_array() && formal.element == actual.element {
-        return Some(44);
-    }
-    if !assignable(formal, actual) {
-        return None;
-    }
-    let (a, b) = (formal.base()?, actual.base()?);
-    let spatial = |base: Base| base.is_triple() && base != Base::Color;
-    Some(match () {
-        _ if spatial(a) && spatial(b) => 32,
-        _ if a.is_triple() && b.is_triple() => 27,
-        _ => 23,
-    })
-}
-
-fn score_builtin(signature: &Signature, args: &[Expr]) -> Option<u32> {
-    let fixed = signature.formals.len();
-    let extra = args.len().checked_sub(fixed)?;
-    let pairs = || args[fixed..].chunks(2).all(|pair| pair.len() == 2 && pair[0].ty == Type::STRING);
-    if extra > 0 && !signature.variadic && !(signature.options && pairs()) {
-        return None;
-    }
-    let mut sum = 1 + extra as u32;
-    for ((formal, output), arg) in signature.formals.iter().zip(args) {
-        sum += match formal {
-            // What a builtin writes must be of the very type.
-            Formal::Type(ty) if *output && ty.length != Length::Unsized => (*ty == arg.ty).then_some(100)?,
-            Formal::Type(ty) => score_argument(ty, arg)?,
-            Formal::Any => (!arg.ty.is_array()).then_some(1)?,
-            Formal::AnyArray => arg.ty.is_array().then_some(1)?,
-        };
-    }
-    Some(sum)
-}
-
-fn score_closure(spec: &ClosureSpec, args: &[Expr]) -> Option<u32> {
-    let fixed = spec.params.len();
-    let extra = args.len().checked_sub(fixed)?;
-    if extra % 2 != 0 || args[fixed..].chunks(2).any(|pair| pair[0].ty != Type::STRING) {
-        return None;
-    }
-    let mut scores = spec.params.iter().zip(args).map(|(param, arg)| score_argument(&param_type(param.kind), arg));
-    scores.try_fold(1 + extra as u32, |sum, score| Some(sum + score?))
-}
-
-fn rank_type(ty: &Type) -> u32 {
-    match ty.base() {
-        Some(Base::Float) => 0,
-        Some(Base::Int) => 1,
-        Some(Base::Color) => 2,
-        Some(Base::Vector) => 3,
-        Some(Base::Point) => 4,
-        Some(Base::Normal) => 5,
-        Some(Base::Matrix) => 6,
-        _ => 7,
-    }
 }

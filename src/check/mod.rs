@@ -12,6 +12,7 @@ mod format;
 mod initial;
 mod operator;
 mod place;
+mod rank;
 mod statement;
 pub mod typed;
 

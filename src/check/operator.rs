@@ -1,8 +1,8 @@
 //! Operators and assignments.
 
-use super::call::score_type;
 use super::context::Checker;
 use super::convert::{equivalent, is_number, is_numeric};
+use super::rank::score_type;
 use super::typed::{Argument, Expr, ExprKind, FunctionId};
 use crate::lang::types::{Base, Type};
 use velour_grammar::ast::{self, BinaryOp, UnaryOp};
@@ -149,8 +149,9 @@ impl Checker<'_> {
         let expected = place.as_ref().map(|place| place.ty.clone());
         let value = self.check_expr(value, expected.as_ref());
         let Some(place) = place else { return Expr::error(span) };
-        // The operator is checked as `target op value`, then its parts are taken out again.
-        let reading = self.check_expr(target, None);
+        // The operator is checked as `target op value`, then its parts are taken out again. The target has been checked:
+        // doing so again would double the work, and the messages, of every level of nested updates.
+        let reading = place.reading(&self.variables[place.var.0 as usize].ty, target.span);
         let result = self.binary(op, reading, value, span);
         let ty = place.ty.clone();
         let both_numbers = is_number(&ty) && is_number(&result.ty);

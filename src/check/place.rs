@@ -61,19 +61,25 @@ impl Checker<'_> {
 
     fn place_index(&mut self, base: &ast::Expr, index: &ast::Expr, whole: &ast::Expr) -> Option<Place> {
         // `m[i][j]` is one step: a matrix has no rows of its own.
-        if let ast::ExprKind::Index(matrix, row) = &base.kind {
-            let before = self.diagnostics.list.len();
-            let inner = self.place(matrix)?;
-            if inner.ty.base() == Some(Base::Matrix) {
-                let row = self.check_expr(row, Some(&Type::INT));
-                let column = self.check_expr(index, Some(&Type::INT));
-                let (row, column) = (self.index_value(row, &inner.ty), self.index_value(column, &inner.ty));
-                let path = inner.path.into_iter().chain([Access::Matrix(row, column)]).collect();
-                return Some(Place { var: inner.var, path, ty: Type::FLOAT });
+        let place = match &base.kind {
+            ast::ExprKind::Index(inner, row) => {
+                let inner = self.place(inner)?;
+                if inner.ty.base() == Some(Base::Matrix) {
+                    let row = self.check_expr(row, Some(&Type::INT));
+                    let column = self.check_expr(index, Some(&Type::INT));
+                    let (row, column) = (self.index_value(row, &inner.ty), self.index_value(column, &inner.ty));
+                    let path = inner.path.into_iter().chain([Access::Matrix(row, column)]).collect();
+                    return Some(Place { var: inner.var, path, ty: Type::FLOAT });
+                }
+                self.place_element(inner, row, base)?
             }
-            self.diagnostics.list.truncate(before);
-        }
-        let mut place = self.place(base)?;
+            _ => self.place(base)?,
+        };
+        self.place_element(place, index, whole)
+    }
+
+    /// The element of a place that has been found already.
+    fn place_element(&mut self, mut place: Place, index: &ast::Expr, whole: &ast::Expr) -> Option<Place> {
         let index = self.check_expr(index, Some(&Type::INT));
         let index = self.index_value(index, &place.ty);
         match place.ty.base() {

@@ -222,6 +222,28 @@ pub enum Argument {
     Out(Place),
 }
 
+impl Place {
+    /// The value at this place; `root` is the type of its variable.
+    pub fn reading(&self, root: &Type, span: Span) -> Expr {
+        let mut value = Expr::new(ExprKind::Var(self.var), root.clone(), span);
+        for access in &self.path {
+            let ty = match access {
+                Access::Field(at) => value.ty.structure().map_or(Type::VOID, |s| s.fields[*at as usize].1.clone()),
+                Access::Element(_) => value.ty.element_type(),
+                Access::Component(_) | Access::Matrix(..) => Type::FLOAT,
+            };
+            let (whole, boxed) = (Box::new(value), |index: &Expr| Box::new(index.clone()));
+            let kind = match access {
+                Access::Field(at) => ExprKind::Field(whole, *at),
+                Access::Element(at) | Access::Component(at) => ExprKind::Index(whole, boxed(at)),
+                Access::Matrix(row, column) => ExprKind::MatrixElement(whole, boxed(row), boxed(column)),
+            };
+            value = Expr::new(kind, ty, span);
+        }
+        value
+    }
+}
+
 impl Argument {
     /// The type of the argument.
     pub fn ty(&self) -> &Type {

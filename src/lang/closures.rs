@@ -134,8 +134,11 @@ const NORMAL: ParamSpec = param("N", ParamKind::Normal, "shading normal, unit le
 const TANGENT: ParamSpec = param("U", ParamKind::Vector, "direction of xalpha; zero for any");
 const ETA: ParamSpec = param("eta", ParamKind::Float, "index of refraction inside over outside, > 0");
 const SHEEN_ROUGHNESS: ParamSpec = param("roughness", ParamKind::Float, "Charlie roughness r, clamped to 0.01..1");
-const LAYERING: ParamSpec =
-    choice("layering", &["min", "view", "kelemen"], "how the base is scaled: \"min\" (default), \"view\" or \"kelemen\"");
+const LAYERING: ParamSpec = choice(
+    "layering",
+    &["min", "view", "kelemen"],
+    "how the base is scaled: \"min\" (default), \"view\" or \"kelemen\"",
+);
 const SHADOWING: ParamSpec = choice(
     "shadowing",
     &["exact", "published", "ashikhmin"],
@@ -143,6 +146,7 @@ const SHADOWING: ParamSpec = choice(
 );
 const SOFTENING: ParamSpec =
     param("softening", ParamKind::Int, "1 (default) softens the terminator by eq. 4, 0 does not");
+const MODE: ParamSpec = param("mode", ParamKind::Int, "0: this model (the default); other values are not run");
 
 /// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
 pub const NOT_YET: &[&str] = &[
@@ -166,18 +170,33 @@ pub const NOT_YET: &[&str] = &[
 const LABEL: ParamSpec =
     param("label", ParamKind::String, "a name for the host; velour carries it and gives it no meaning");
 
+fn spec(
+    name: &'static str,
+    model: Model,
+    params: &[ParamSpec],
+    keywords: &[ParamSpec],
+    doc: &'static str,
+) -> ClosureSpec {
+    // Every closure takes a label, after the keywords that its model reads.
+    let keywords = keywords.iter().cloned().chain([LABEL]).collect();
+    ClosureSpec { name, model, params: params.to_vec(), keywords, doc }
+}
+
 fn standard_specs() -> Vec<ClosureSpec> {
+    let mut specs = plain_specs();
+    specs.extend(cloth_specs());
+    specs
+}
+
+/// The closures that OSL has had from the start.
+fn plain_specs() -> Vec<ClosureSpec> {
     use ParamKind::*;
-    let spec = |name, model, params: &[ParamSpec], keywords: &[ParamSpec], doc| ClosureSpec {
-        name,
-        model,
-        params: params.to_vec(),
-        // Every closure takes a label, after the keywords that its model reads.
-        keywords: keywords.iter().cloned().chain([LABEL]).collect(),
-        doc,
-    };
     let microfacet = [
-        choice("distribution", &["ggx", "beckmann", "default", "sharp", ""], "\"ggx\", \"beckmann\" or \"default\" (ggx)"),
+        choice(
+            "distribution",
+            &["ggx", "beckmann", "default", "sharp", ""],
+            "\"ggx\", \"beckmann\" or \"default\" (ggx)",
+        ),
         NORMAL,
         TANGENT,
         param("xalpha", Float, "GGX width along U, 0..1; 0 is a mirror"),
@@ -185,8 +204,6 @@ fn standard_specs() -> Vec<ClosureSpec> {
         ETA,
         param("refract", Int, "0 reflects, 1 refracts, 2 does both"),
     ];
-    let sheen_tint =
-        param("tint", Color, "color of the sheen; its largest component scales the albedo taken from the base");
     vec![
         spec(
             "emission",
@@ -230,6 +247,15 @@ fn standard_specs() -> Vec<ClosureSpec> {
             &[],
             "a tagged value; scatters nothing",
         ),
+    ]
+}
+
+/// Sheen, and the layering it needs.
+fn cloth_specs() -> Vec<ClosureSpec> {
+    use ParamKind::*;
+    let sheen_tint =
+        param("tint", Color, "color of the sheen; its largest component scales the albedo taken from the base");
+    vec![
         spec(
             "sheen",
             Model::Sheen,
@@ -241,7 +267,7 @@ fn standard_specs() -> Vec<ClosureSpec> {
             "sheen_bsdf",
             Model::SheenBsdf,
             &[NORMAL, param("albedo", Color, "color of the sheen"), SHEEN_ROUGHNESS],
-            &[SHADOWING, SOFTENING],
+            &[SHADOWING, SOFTENING, MODE],
             "the sheen lobe alone, to be laid over a base by layer()",
         ),
         spec(
