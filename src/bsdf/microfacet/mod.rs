@@ -107,9 +107,14 @@ impl<const BECKMANN: bool, const REFRACT: bool> Scatter for Microfacet<BECKMANN,
         if lost { Vec3::ZERO } else { wi }
     }
 
+    /// An estimate: the Fresnel term averaged over facets tilted by the width. It never reaches 0 or 1, because facets far
+    /// from the normal always send some light either way, and a part that is never picked would be lost.
     #[inline(always)]
     fn albedo(&self, cos: f32) -> f32 {
-        let reflected = dielectric(cos, self.eta);
-        if REFRACT { 1.0 - reflected } else { reflected }
+        let width = self.widths.x.max(self.widths.y);
+        let tilted = |by: f32| dielectric((cos + by * width).clamp(1e-3, 1.0), self.eta);
+        let reflected = 0.25 * (tilted(-1.0) + tilted(1.0)) + 0.5 * dielectric(cos, self.eta);
+        let limited = select(self.eta > 0.0, reflected.clamp(0.02, 0.97), 1.0);
+        if REFRACT { 1.0 - limited } else { limited }
     }
 }
