@@ -291,10 +291,9 @@ impl Checker<'_> {
         }
         if let (true, Some(ExprKind::String(kind))) =
             (matches!(name, "noise" | "pnoise"), values.first().map(|v| &v.kind))
+            && !self.noise_exists(name, kind, values[0].span)
         {
-            if !self.noise_exists(name, kind, values[0].span) {
-                return Expr::error(span);
-            }
+            return Expr::error(span);
         }
         let mut arguments = Vec::new();
         for (at, (value, arg)) in values.into_iter().zip(args).enumerate() {
@@ -482,6 +481,9 @@ fn rank_type(ty: &Type) -> u32 {
         Some(Base::Point) => 4,
         Some(Base::Normal) => 5,
         Some(Base::Matrix) => 6,
-        _ => 7,
+        Some(Base::String) => 7,
+        Some(Base::Closure) => 8,
+        Some(Base::Void) => 10,
+        None => 9,
     }
 }
