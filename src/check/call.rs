@@ -232,10 +232,9 @@ impl Checker<'_> {
         }
         if let (true, Some(ExprKind::String(kind))) =
             (matches!(name, "noise" | "pnoise"), values.first().map(|v| &v.kind))
+            && !self.noise_exists(name, kind, values[0].span)
         {
-            if !self.noise_exists(name, kind, values[0].span) {
-                return Expr::error(span);
-            }
+            return Expr::error(span);
         }
         let mut arguments = Vec::new();
         for (at, (value, arg)) in values.into_iter().zip(args).enumerate() {
@@ -273,7 +272,7 @@ impl Checker<'_> {
         let mut params = Vec::new();
         for (param, value) in spec.params.iter().zip(values.by_ref()) {
             if let Some(message) = wrong_choice(param, &value) {
-                let diagnostic = Diagnostic::warning("W0503", value.span, message);
+                let diagnostic = Diagnostic::warning("W0505", value.span, message);
                 self.report(diagnostic.help(format!("the first choice, \"{}\", is taken", param.choices[0])));
             }
             params.push(self.convert(value, &param_type(param.kind)));

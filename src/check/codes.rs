@@ -30,7 +30,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0511", "a format string that does not fit its arguments"),
     ("W0501", "a float stored in an int"),
     ("W0502", "an ambiguous call"),
-    ("W0503", "a string that is none of a closure's choices"),
+    ("W0505", "a string that is none of a closure's choices"),
     ("W0503", "an index outside its array"),
     ("W0504", "a function defined twice"),
 ];

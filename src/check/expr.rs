@@ -196,11 +196,11 @@ impl Checker<'_> {
             return Expr::error(span);
         }
         let index = self.index_value(index, &base.ty);
-        if let ExprKind::Index(matrix, row) = &base.kind {
-            if matrix.ty.base() == Some(Base::Matrix) {
-                let kind = ExprKind::MatrixElement(matrix.clone(), row.clone(), Box::new(index));
-                return Expr::new(kind, Type::FLOAT, span);
-            }
+        if let ExprKind::Index(matrix, row) = &base.kind
+            && matrix.ty.base() == Some(Base::Matrix)
+        {
+            let kind = ExprKind::MatrixElement(matrix.clone(), row.clone(), Box::new(index));
+            return Expr::new(kind, Type::FLOAT, span);
         }
         let ty = match base.ty.base() {
             None if base.ty.is_array() => base.ty.element_type(),
@@ -227,12 +227,13 @@ impl Checker<'_> {
             Some(base) if base.is_triple() => 3,
             _ => of.count(),
         };
-        if let ExprKind::Int(value) = index.kind {
-            if bound > 0 && (value < 0 || value as usize >= bound) {
-                let message = format!("index {value} is outside 0..{}", bound - 1);
-                let diagnostic = Diagnostic::warning("W0503", index.span, message);
-                self.report(diagnostic.help("at run time the nearest element stands for it"));
-            }
+        if let ExprKind::Int(value) = index.kind
+            && bound > 0
+            && (value < 0 || value as usize >= bound)
+        {
+            let message = format!("index {value} is outside 0..{}", bound - 1);
+            let diagnostic = Diagnostic::warning("W0503", index.span, message);
+            self.report(diagnostic.help("at run time the nearest element stands for it"));
         }
         self.convert(index, &Type::INT)
     }

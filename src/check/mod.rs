@@ -1,6 +1,12 @@
 //! Syntax tree to typed shader: names, types, overloads. Every mistake a user can make ends here, as a diagnostic.
 //!
 //! The checker goes on after a mistake: a wrong expression becomes a stand-in that no later message complains about.
+//!
+//! Decision (2026-11-22): a literal index outside its array and a function defined twice are warnings, because OSL runs
+//! such shaders (the nearest element is taken, the later function is called), instead of errors that would refuse them.
+//!
+//! Decision (2026-11-22): functions are expanded in place and may not expand beyond a fixed amount of text, instead of
+//! calls at run time, because then values bind without moves and constants fold through calls.
 
 mod call;
 pub mod codes;

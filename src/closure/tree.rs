@@ -168,9 +168,8 @@ impl Tree {
                 Some(Node::Leaf { .. }) => return true,
                 Some(Node::Add(a, b)) => open.extend([Some(a), Some(b)]),
                 Some(Node::Scale { weight, child }) => {
-                    if weight.iter().any(|w| self.float(*w, lane) != 0.0) {
-                        open.push(Some(child));
-                    }
+                    let zero = weight.iter().all(|w| self.float(*w, lane) == 0.0);
+                    open.push(Some(child).filter(|_| !zero));
                 }
                 Some(Node::Select { mask, then, otherwise }) => {
                     open.push(if self.int(mask, lane) != 0 { then } else { otherwise });

@@ -60,10 +60,12 @@ impl Default for Compiler {
 impl Compiler {
     /// A compiler with the built-in header and the standard closures.
     pub fn new() -> Self {
-        let mut options = Options::default();
-        // The header is always read first, so including it again adds nothing.
-        options.virtual_files = vec![("stdosl.h".to_owned(), String::new()), (STDOSL_NAME.to_owned(), String::new())];
-        options.prelude = Some((STDOSL_NAME.to_owned(), STDOSL.to_owned()));
+        let options = Options {
+            // The header is always read first, so including it again adds nothing.
+            virtual_files: vec![("stdosl.h".to_owned(), String::new()), (STDOSL_NAME.to_owned(), String::new())],
+            prelude: Some((STDOSL_NAME.to_owned(), STDOSL.to_owned())),
+            ..Options::default()
+        };
         Compiler { options, closures: Arc::new(ClosureTable::standard()) }
     }
 

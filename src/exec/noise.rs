@@ -9,28 +9,50 @@ use crate::math::noise::simplex::*;
 use crate::math::noise::{Endless, Jet, Periodic, unsigned};
 use multiversion::multiversion;
 
-/// A float column that may stand for all lanes.
-#[derive(Clone, Copy)]
-struct Column<'a>(&'a [f32]);
+/// How many lanes are computed at a time: a few vectors of the widest kind.
+const BLOCK: usize = 16;
 
-impl Column<'_> {
-    #[inline(always)]
-    fn at(&self, lane: usize) -> f32 {
-        if self.0.len() == 1 { self.0[0] } else { self.0[lane] }
-    }
-}
+/// Coordinates, and periods behind them, of the lanes of one block.
+type Block = [[f32; BLOCK]; 8];
 
 /// Writes the jets of all lanes: values first, then gradients.
+///
+/// Coordinates and results pass through arrays of a fixed length, because only then does the compiler turn the many
+/// steps of a noise into SIMD.
 #[inline(always)]
-fn write<const D: usize, const O: usize>(out: &mut [Vec<f32>], bias: bool, jet: impl Fn(usize) -> [Jet<D>; O]) {
+fn write<const D: usize, const O: usize>(
+    out: &mut [Vec<f32>],
+    columns: &[&[f32]],
+    bias: bool,
+    jet: impl Fn(&Block, usize) -> [Jet<D>; O],
+) {
     let lanes = out[0].len();
-    for lane in 0..lanes {
-        let jets = jet(lane);
+    let mut x = [[0.0; BLOCK]; 8];
+    let mut values = [[0.0; BLOCK]; O];
+    let mut gradients = [[[0.0; BLOCK]; D]; O];
+    for first in (0..lanes).step_by(BLOCK) {
+        let count = BLOCK.min(lanes - first);
+        for (slot, column) in x.iter_mut().zip(columns) {
+            match column.len() {
+                1 => *slot = [column[0]; BLOCK],
+                _ => slot[..count].copy_from_slice(&column[first..first + count]),
+            }
+        }
+        // Lanes beyond the last one are computed as well: a loop of a known length is worth more than they cost.
+        for l in 0..BLOCK {
+            let jets = jet(&x, l);
+            for o in 0..O {
+                let jet = if bias { unsigned(jets[o]) } else { jets[o] };
+                values[o][l] = jet.value;
+                for d in 0..D {
+                    gradients[o][d][l] = jet.gradient[d];
+                }
+            }
+        }
         for o in 0..O {
-            let jet = if bias { unsigned(jets[o]) } else { jets[o] };
-            out[o][lane] = jet.value;
+            out[o][first..first + count].copy_from_slice(&values[o][..count]);
             for d in 0..D {
-                out[O + o * D + d][lane] = jet.gradient[d];
+                out[O + o * D + d][first..first + count].copy_from_slice(&gradients[o][d][..count]);
             }
         }
     }
@@ -38,52 +60,52 @@ fn write<const D: usize, const O: usize>(out: &mut [Vec<f32>], bias: bool, jet: 
 
 /// One noise function by its number of dimensions, for one or three results.
 macro_rules! by_dims {
-    ($noise:ident, $out:ident, $x:ident, $bias:expr, $lane:ident,
+    ($noise:ident, $out:ident, $columns:ident, $bias:expr, |$x:ident, $lane:ident|
      $($dims:literal => $scalar:expr, $vector:expr);+) => {
         match ($noise.dims, $noise.outputs, $noise.gradient) {
-            $(($dims, 1, false) => write::<0, 1>($out, $bias, |$lane| [$scalar]),
-              ($dims, 1, true) => write::<$dims, 1>($out, $bias, |$lane| [$scalar]),
-              ($dims, _, false) => write::<0, 3>($out, $bias, |$lane| $vector),
-              ($dims, _, true) => write::<$dims, 3>($out, $bias, |$lane| $vector),)+
+            $(($dims, 1, false) => write::<0, 1>($out, $columns, $bias, |$x: &Block, $lane| [$scalar]),
+              ($dims, 1, true) => write::<$dims, 1>($out, $columns, $bias, |$x: &Block, $lane| [$scalar]),
+              ($dims, _, false) => write::<0, 3>($out, $columns, $bias, |$x: &Block, $lane| $vector),
+              ($dims, _, true) => write::<$dims, 3>($out, $columns, $bias, |$x: &Block, $lane| $vector),)+
             _ => {}
         }
     };
 }
 
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn perlin(noise: Noise, out: &mut [Vec<f32>], x: &[Column], bias: bool) {
-    by_dims!(noise, out, x, bias, l,
-        1 => perlin1(Endless, x[0].at(l)), perlin1_vector(Endless, x[0].at(l));
-        2 => perlin2(Endless, x[0].at(l), x[1].at(l)), perlin2_vector(Endless, x[0].at(l), x[1].at(l));
-        3 => perlin3(Endless, x[0].at(l), x[1].at(l), x[2].at(l)),
-             perlin3_vector(Endless, x[0].at(l), x[1].at(l), x[2].at(l));
-        4 => perlin4(Endless, x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)),
-             perlin4_vector(Endless, x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)));
+fn perlin(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
+    by_dims!(noise, out, columns, bias, |x, l|
+        1 => perlin1(Endless, x[0][l]), perlin1_vector(Endless, x[0][l]);
+        2 => perlin2(Endless, x[0][l], x[1][l]), perlin2_vector(Endless, x[0][l], x[1][l]);
+        3 => perlin3(Endless, x[0][l], x[1][l], x[2][l]),
+             perlin3_vector(Endless, x[0][l], x[1][l], x[2][l]);
+        4 => perlin4(Endless, x[0][l], x[1][l], x[2][l], x[3][l]),
+             perlin4_vector(Endless, x[0][l], x[1][l], x[2][l], x[3][l]));
 }
 
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn perlin_periodic(noise: Noise, out: &mut [Vec<f32>], x: &[Column], bias: bool) {
-    let p1 = |l: usize| Periodic::new([x[1].at(l)]);
-    let p2 = |l: usize| Periodic::new([x[2].at(l), x[3].at(l)]);
-    let p3 = |l: usize| Periodic::new([x[3].at(l), x[4].at(l), x[5].at(l)]);
-    let p4 = |l: usize| Periodic::new([x[4].at(l), x[5].at(l), x[6].at(l), x[7].at(l)]);
-    by_dims!(noise, out, x, bias, l,
-        1 => perlin1(p1(l), x[0].at(l)), perlin1_vector(p1(l), x[0].at(l));
-        2 => perlin2(p2(l), x[0].at(l), x[1].at(l)), perlin2_vector(p2(l), x[0].at(l), x[1].at(l));
-        3 => perlin3(p3(l), x[0].at(l), x[1].at(l), x[2].at(l)),
-             perlin3_vector(p3(l), x[0].at(l), x[1].at(l), x[2].at(l));
-        4 => perlin4(p4(l), x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)),
-             perlin4_vector(p4(l), x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)));
+fn perlin_periodic(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
+    let p1 = |x: &Block, l: usize| Periodic::new([x[1][l]]);
+    let p2 = |x: &Block, l: usize| Periodic::new([x[2][l], x[3][l]]);
+    let p3 = |x: &Block, l: usize| Periodic::new([x[3][l], x[4][l], x[5][l]]);
+    let p4 = |x: &Block, l: usize| Periodic::new([x[4][l], x[5][l], x[6][l], x[7][l]]);
+    by_dims!(noise, out, columns, bias, |x, l|
+        1 => perlin1(p1(x, l), x[0][l]), perlin1_vector(p1(x, l), x[0][l]);
+        2 => perlin2(p2(x, l), x[0][l], x[1][l]), perlin2_vector(p2(x, l), x[0][l], x[1][l]);
+        3 => perlin3(p3(x, l), x[0][l], x[1][l], x[2][l]),
+             perlin3_vector(p3(x, l), x[0][l], x[1][l], x[2][l]);
+        4 => perlin4(p4(x, l), x[0][l], x[1][l], x[2][l], x[3][l]),
+             perlin4_vector(p4(x, l), x[0][l], x[1][l], x[2][l], x[3][l]));
 }
 
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn simplex(noise: Noise, out: &mut [Vec<f32>], x: &[Column], bias: bool) {
-    by_dims!(noise, out, x, bias, l,
-        1 => simplex1(0, x[0].at(l)), simplex1_vector(x[0].at(l));
-        2 => simplex2(0, x[0].at(l), x[1].at(l)), simplex2_vector(x[0].at(l), x[1].at(l));
-        3 => simplex3(0, x[0].at(l), x[1].at(l), x[2].at(l)), simplex3_vector(x[0].at(l), x[1].at(l), x[2].at(l));
-        4 => simplex4(0, x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)),
-             simplex4_vector(x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)));
+fn simplex(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
+    by_dims!(noise, out, columns, bias, |x, l|
+        1 => simplex1(0, x[0][l]), simplex1_vector(x[0][l]);
+        2 => simplex2(0, x[0][l], x[1][l]), simplex2_vector(x[0][l], x[1][l]);
+        3 => simplex3(0, x[0][l], x[1][l], x[2][l]), simplex3_vector(x[0][l], x[1][l], x[2][l]);
+        4 => simplex4(0, x[0][l], x[1][l], x[2][l], x[3][l]),
+             simplex4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
 }
 
 /// A jet without gradient.
@@ -94,33 +116,33 @@ fn flat(value: f32) -> Jet<0> {
 
 /// Cell and hash noise have no gradient, so one arm a shape is enough.
 macro_rules! flat_by_dims {
-    ($noise:ident, $out:ident, $lane:ident, $($dims:literal => $scalar:expr, $vector:expr);+) => {
+    ($noise:ident, $out:ident, $columns:ident, |$x:ident, $lane:ident| $($dims:literal => $scalar:expr, $vector:expr);+) => {
         match ($noise.dims, $noise.outputs) {
-            $(($dims, 1) => write::<0, 1>($out, false, |$lane| [flat($scalar)]),
-              ($dims, _) => write::<0, 3>($out, false, |$lane| $vector.map(flat)),)+
+            $(($dims, 1) => write::<0, 1>($out, $columns, false, |$x: &Block, $lane| [flat($scalar)]),
+              ($dims, _) => write::<0, 3>($out, $columns, false, |$x: &Block, $lane| $vector.map(flat)),)+
             _ => {}
         }
     };
 }
 
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn cell(noise: Noise, out: &mut [Vec<f32>], x: &[Column]) {
-    flat_by_dims!(noise, out, l,
-        1 => cell1(x[0].at(l)), cell1_vector(x[0].at(l));
-        2 => cell2(x[0].at(l), x[1].at(l)), cell2_vector(x[0].at(l), x[1].at(l));
-        3 => cell3(x[0].at(l), x[1].at(l), x[2].at(l)), cell3_vector(x[0].at(l), x[1].at(l), x[2].at(l));
-        4 => cell4(x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)),
-             cell4_vector(x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)));
+fn cell(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]]) {
+    flat_by_dims!(noise, out, columns, |x, l|
+        1 => cell1(x[0][l]), cell1_vector(x[0][l]);
+        2 => cell2(x[0][l], x[1][l]), cell2_vector(x[0][l], x[1][l]);
+        3 => cell3(x[0][l], x[1][l], x[2][l]), cell3_vector(x[0][l], x[1][l], x[2][l]);
+        4 => cell4(x[0][l], x[1][l], x[2][l], x[3][l]),
+             cell4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
 }
 
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn hash(noise: Noise, out: &mut [Vec<f32>], x: &[Column]) {
-    flat_by_dims!(noise, out, l,
-        1 => hash1_noise(x[0].at(l)), hash1_vector(x[0].at(l));
-        2 => hash2_noise(x[0].at(l), x[1].at(l)), hash2_vector(x[0].at(l), x[1].at(l));
-        3 => hash3_noise(x[0].at(l), x[1].at(l), x[2].at(l)), hash3_vector(x[0].at(l), x[1].at(l), x[2].at(l));
-        4 => hash4_noise(x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)),
-             hash4_vector(x[0].at(l), x[1].at(l), x[2].at(l), x[3].at(l)));
+fn hash(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]]) {
+    flat_by_dims!(noise, out, columns, |x, l|
+        1 => hash1_noise(x[0][l]), hash1_vector(x[0][l]);
+        2 => hash2_noise(x[0][l], x[1][l]), hash2_vector(x[0][l], x[1][l]);
+        3 => hash3_noise(x[0][l], x[1][l], x[2][l]), hash3_vector(x[0][l], x[1][l], x[2][l]);
+        4 => hash4_noise(x[0][l], x[1][l], x[2][l], x[3][l]),
+             hash4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
 }
 
 impl Run<'_> {
@@ -128,20 +150,21 @@ impl Run<'_> {
         let mut out = std::mem::take(&mut self.s.columns);
         out.extend(dst.iter().map(|reg| std::mem::take(&mut self.regs.floats[reg.0 as usize])));
         // Four coordinates and their four periods at most.
-        let mut x = [Column(&[]); 8];
+        let mut x: [&[f32]; 8] = [&[]; 8];
         for (slot, &reg) in x.iter_mut().zip(src) {
-            *slot = Column(self.regs.f(reg));
+            *slot = self.regs.f(reg);
         }
+        let x = &x[..src.len().min(8)];
         match noise.kind {
             NoiseKind::Perlin | NoiseKind::UPerlin => {
                 let bias = noise.kind == NoiseKind::UPerlin;
                 let run = if noise.periodic { perlin_periodic } else { perlin };
-                run(noise, &mut out, &x, bias);
+                run(noise, &mut out, x, bias);
             }
-            NoiseKind::Simplex => simplex(noise, &mut out, &x, false),
-            NoiseKind::USimplex => simplex(noise, &mut out, &x, true),
-            NoiseKind::Cell => cell(noise, &mut out, &x),
-            NoiseKind::Hash => hash(noise, &mut out, &x),
+            NoiseKind::Simplex => simplex(noise, &mut out, x, false),
+            NoiseKind::USimplex => simplex(noise, &mut out, x, true),
+            NoiseKind::Cell => cell(noise, &mut out, x),
+            NoiseKind::Hash => hash(noise, &mut out, x),
         }
         for (reg, column) in dst.iter().zip(out.drain(..)) {
             self.regs.floats[reg.0 as usize] = column;

@@ -140,17 +140,13 @@ impl Builder {
     fn value(&mut self, key: Key, kind: Kind, reads: &[Reg], make: impl FnOnce(Reg) -> Instr) -> Reg {
         // A mutable register may hold something else by now, so nothing is remembered of it.
         let stable = self.simplify && reads.iter().all(|r| !self.program.regs[r.0 as usize].mutable);
-        if stable {
-            if let Some(&known) = self.values.iter().rev().find_map(|scope| scope.get(&key)) {
-                return known;
-            }
+        if stable && let Some(&known) = self.values.iter().rev().find_map(|scope| scope.get(&key)) {
+            return known;
         }
         let dst = self.program.reg(kind, false);
         self.instr(make(dst));
-        if stable {
-            if let Some(scope) = self.values.last_mut() {
-                scope.insert(key, dst);
-            }
+        if stable && let Some(scope) = self.values.last_mut() {
+            scope.insert(key, dst);
         }
         dst
     }

@@ -8,10 +8,10 @@ use super::program::*;
 
 /// Panics in debug builds when a program breaks a promise: that would be a mistake of the compiler, not of a user.
 pub fn debug_verify(program: &Program) {
-    if cfg!(debug_assertions) {
-        if let Err(problem) = verify(program) {
-            panic!("the compiler broke a promise: {problem}");
-        }
+    if cfg!(debug_assertions)
+        && let Err(problem) = verify(program)
+    {
+        panic!("the compiler broke a promise: {problem}");
     }
 }
 

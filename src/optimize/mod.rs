@@ -1,4 +1,7 @@
 //! Program to program: derivatives where they are read, dead code out, uniform values found.
+//!
+//! Differs from OSL: where OSL's derivatives have the wrong sign (`atan2`), velour's are the mathematical ones, and asking for a
+//! derivative never changes the value (OSL's `pow(0, 0)` becomes 0 when its derivative is read).
 
 mod dead;
 mod derive;

@@ -135,7 +135,7 @@ impl Preprocessor<'_> {
     /// `#pragma once`, `#pragma error "…"`, `#pragma warning "…"`; all others are none of our business.
     fn pragma(&mut self, arguments: &[PpToken]) {
         if let Some((word, rest)) = arguments.split_first() {
-            match &*self.text(*word) {
+            match self.text(*word) {
                 "error" => return self.stop_directive(*word, rest),
                 "warning" => return self.warning_directive(*word, rest),
                 _ => {}

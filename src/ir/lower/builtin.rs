@@ -216,7 +216,7 @@ impl Lower<'_> {
                 self.load(&target)
             }
         };
-        value.len()
+        value.count()
     }
 
     /// Is a parameter connected; is a value known before the shader runs?

@@ -150,7 +150,7 @@ impl Lower<'_> {
             Binding::Strings(strings) => strings.len() as u32,
             Binding::Connection(layer, name) => {
                 let found = finished.get(*layer).and_then(|params| self.part_of(params, name));
-                found.map_or(1, |(value, _)| value.len() as u32)
+                found.map_or(1, |(value, _)| value.count() as u32)
             }
         }
     }
@@ -305,7 +305,7 @@ impl Lower<'_> {
             let value = self.stable(&value);
             let mut ty = variable.ty.clone();
             if param.open {
-                ty.length = Length::Fixed(value.len() as u32);
+                ty.length = Length::Fixed(value.count() as u32);
             }
             out.insert(variable.name.clone(), (value, ty));
         }

@@ -59,13 +59,12 @@ impl Lower<'_> {
 
     /// Noise whose kind is a string: known here, or compared with every name when it runs.
     fn named_noise(&mut self, name: Reg, mut noise: Noise, src: &[Reg]) -> Vec<Reg> {
-        if let Some(known) = self.b.known_int(name) {
-            if let Some(kind) =
+        if let Some(known) = self.b.known_int(name)
+            && let Some(kind) =
                 NoiseKind::from_name(Symbol(known).text()).filter(|kind| !noise.periodic || kind.repeats())
-            {
-                noise.kind = kind;
-                return self.noise(noise, src);
-            }
+        {
+            noise.kind = kind;
+            return self.noise(noise, src);
         }
         let (name, zero) = (self.fixed(name), self.b.float(0.0));
         let src: Vec<Reg> = src.iter().map(|&reg| self.fixed(reg)).collect();

@@ -57,10 +57,10 @@ pub fn zero_of(kind: Kind) -> Const {
 
 impl Value {
     /// How many elements an array has; 1 for what is none.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         match self {
             Value::Array { dims, .. } => dims[0] as usize,
-            Value::Struct(fields) => fields.first().map_or(1, Value::len),
+            Value::Struct(fields) => fields.first().map_or(1, Value::count),
             Value::Regs(_) | Value::Item { .. } => 1,
         }
     }
@@ -200,7 +200,7 @@ impl Lower<'_> {
                 Value::Struct(a.iter().zip(b).map(|(a, b)| self.copy_into(a, b)).collect())
             }
             (Value::Array { .. }, _) => {
-                if from.len() < to.len() {
+                if from.count() < to.count() {
                     self.clear(to);
                 }
                 self.copy_elements(to, from);
