@@ -141,3 +141,71 @@ pub(super) fn param_error(layer: &Layer, name: &str, message: String) -> GroupEr
     let subject = GroupSubject::Param { layer: layer.name.clone(), name: name.to_owned() };
     GroupError { message, help, subject }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{Compiler, GroupBuilder};
+    use crate::exec::{Machine, Points, Report};
+
+    /// A shader with parameters of every shape, which prints them all.
+    const SHAPES: &str = "struct T { color c; float w[2]; }; \
+        shader shapes(color k = 0, float a[3] = {1, 2, 3}, int n = 7, T l[2] = {{1, {1, 2}}, {2, {3, 4}}}, string s = \"\", \
+            float o[] = {1, 2}) { \
+            printf(\"%g; %g %g %g; %d; %g %g %g %g; %s; %g %g/\", k, a[0], a[1], a[2], n, l[0].c, l[1].c, l[1].w[0], l[1].w[1], \
+                s, o[0], o[1]); }";
+
+    /// What the shader of every shape prints, or why its group cannot be built.
+    fn shapes(set: impl Fn(GroupBuilder) -> GroupBuilder) -> Result<String, String> {
+        let compiler = Compiler::new();
+        let source = "shader source(output color c = color(1, 2, 6), output float f = 2.5) {}";
+        let (source, shader) = (compiler.compile("a.osl", source).unwrap(), compiler.compile("b.osl", SHAPES).unwrap());
+        let builder = GroupBuilder::new(compiler.closures.clone());
+        let builder = builder.layer("source", &source).layer("shapes", &shader);
+        let group = set(builder).build().map_err(|error| error.message)?;
+        let mut machine = Machine::new();
+        machine.shade(&group, &Points::new(1));
+        Ok(machine
+            .take_reports()
+            .into_iter()
+            .map(|r| if let Report::Output(text) = r { text } else { String::new() })
+            .collect())
+    }
+
+    #[test]
+    fn parts_of_parameters_are_found_or_refused() {
+        let says = |path: &str, numbers: &[f64]| shapes(|b| b.param(path, numbers));
+        for (path, numbers, printed) in [
+            ("k[1]", &[5.0][..], "0 5 0; 1 2 3; 7; 1 1 1 2 2 2 3 4; ; 1 2/"),
+            ("a[2]", &[5.0], "0 0 0; 1 2 5; 7; 1 1 1 2 2 2 3 4; ; 1 2/"),
+            ("l[1].c", &[7.0, 8.0, 9.0], "0 0 0; 1 2 3; 7; 1 1 1 7 8 9 3 4; ; 1 2/"),
+            ("l[1].c[2]", &[9.0], "0 0 0; 1 2 3; 7; 1 1 1 2 2 9 3 4; ; 1 2/"),
+            ("l[1].w[1]", &[9.0], "0 0 0; 1 2 3; 7; 1 1 1 2 2 2 3 9; ; 1 2/"),
+            ("l[1].w", &[8.0, 9.0], "0 0 0; 1 2 3; 7; 1 1 1 2 2 2 8 9; ; 1 2/"),
+            ("l[1]", &[5.0, 6.0, 7.0, 8.0], "0 0 0; 1 2 3; 7; 1 1 1 5 6 7 8 0; ; 1 2/"),
+            ("a", &[5.0], "0 0 0; 5 0 0; 7; 1 1 1 2 2 2 3 4; ; 1 2/"),
+            ("o", &[5.0, 6.0, 7.0], "0 0 0; 1 2 3; 7; 1 1 1 2 2 2 3 4; ; 5 6/"),
+        ] {
+            assert_eq!(says(path, numbers).as_deref(), Ok(printed), "{path}");
+        }
+        for (path, numbers, message) in [
+            ("k[1][2]", &[5.0][..], "there is no `k[1][2]`: a float has no elements"),
+            ("k[3]", &[5.0], "there is no `k[3]`: index 3 is outside 0..2"),
+            ("a[7]", &[5.0], "there is no `a[7]`: index 7 is outside 0..2"),
+            ("a[x]", &[5.0], "`a[x]` is no part of a parameter: write `name.field` or `name[0]`"),
+            ("a[-1]", &[5.0], "`a[-1]` is no part of a parameter: write `name.field` or `name[0]`"),
+            ("l.c", &[5.0], "there is no `l.c`: a struct T[2] has no field `c`"),
+            ("o[2]", &[5.0], "there is no `o[2]`: index 2 is outside 0..1"),
+            ("k", &[1.0, 2.0, 3.0, 4.0], "parameter `k` is a color and holds 3, not 4 numbers"),
+            ("n", &[1.5], "parameter `n` is an int, and 1.5 is no int"),
+        ] {
+            assert_eq!(says(path, numbers), Err(message.to_owned()), "{path}");
+        }
+        assert_eq!(shapes(|b| b.text("s", "5")).as_deref(), Ok("0 0 0; 1 2 3; 7; 1 1 1 2 2 2 3 4; 5; 1 2/"));
+        assert_eq!(shapes(|b| b.text("n", "nan")), Err("parameter `n` is an int, and NaN is no int".to_owned()));
+        let fed = |from, to| shapes(|b| b.connect(("source", from), ("shapes", to)));
+        assert_eq!(fed("c", "n").as_deref(), Ok("0 0 0; 1 2 3; 3; 1 1 1 2 2 2 3 4; ; 1 2/"), "a triple is averaged");
+        assert_eq!(fed("f", "n").as_deref(), Ok("0 0 0; 1 2 3; 2; 1 1 1 2 2 2 3 4; ; 1 2/"));
+        assert_eq!(fed("c", "l[1].c").as_deref(), Ok("0 0 0; 1 2 3; 7; 1 1 1 1 2 6 3 4; ; 1 2/"));
+        assert_eq!(fed("c[1]", "a[0]").as_deref(), Ok("0 0 0; 2 2 3; 7; 1 1 1 2 2 2 3 4; ; 1 2/"));
+    }
+}
