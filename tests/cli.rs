@@ -154,7 +154,9 @@ fn an_endless_loop_ends_with_one_message() {
 #[test]
 fn wrong_usage_has_status_2() {
     let place = Place::new();
-    let cases: [(&[&str], &str); 13] = [
+    // Numbers are looked at before the scene, whose shader is wrong too.
+    place.file("bad.xml", scene("radiance 1 1 1", "shader syntax l1;"));
+    let cases: [(&[&str], &str); 15] = [
         (
             &["render", "good.xml", "-o", "out.gif"],
             "error: cannot tell the image format of `out.gif`; known extensions: exr, png, hdr\n",
@@ -170,6 +172,11 @@ fn wrong_usage_has_status_2() {
             "error: an image of 0 x 5 pixels cannot be rendered\n",
         ),
         (&["render", "good.xml", "-o", "out.png", "--spp", "0"], "error: at least one sample a pixel is needed\n"),
+        (&["render", "bad.xml", "-o", "out.png", "--aa", "0"], "error: at least one sample a pixel is needed\n"),
+        (
+            &["render", "bad.xml", "-o", "out.png", "--res", "0", "0"],
+            "error: an image of 0 x 0 pixels cannot be rendered\n",
+        ),
         (
             &["render", "good.xml", "-o", "out.png", "--aa", "2", "--spp", "4"],
             "error: the argument '--aa <N>' cannot be used with",
@@ -234,6 +241,28 @@ fn tree_shows_closures_and_lobes() {
 }
 
 #[test]
+fn a_value_keeps_the_type_it_was_written_with() {
+    let place = Place::new();
+    place.file(
+        "typed.osl",
+        "surface typed(int n = 0, float k = 0, string s = \"\", color c = 0) { printf(\"%s\", s); Ci = 0; }",
+    );
+    assert_eq!(place.say(&["tree", "typed.osl", "--param", "s", "inf"]).1, "inf0\n");
+    for (value, says) in [
+        ("float n 1", "parameter `n` is an int, not a float"),
+        ("color k 1 2 3", "parameter `k` is a float, not a color"),
+        ("string k \"1\"", "parameter `k` is a float, not a string"),
+        ("float s 1", "parameter `s` is a string, not a float"),
+        ("float[2] k 1 2", "parameter `k` is a float and holds 1, not 2 numbers"),
+    ] {
+        let error = failure(&place, &scene("radiance 1 1 1", &format!("{value}; shader typed l1;")), 1);
+        assert!(error.contains(&format!("error: {says}\n")), "{value}: {error}");
+    }
+    place.file("fine.xml", scene("radiance 1 1 1", "int k 1; vector c 1 2 3; int n 2; shader typed l1;"));
+    assert_eq!(place.say(&["render", "fine.xml", "-o", "fine.png", "--res", "4", "4", "--spp", "1"]).0, 0);
+}
+
+#[test]
 fn info_lists_explains_and_reads_files() {
     let place = Place::new();
     let (code, out, _) = place.say(&["info"]);
@@ -242,6 +271,11 @@ fn info_lists_explains_and_reads_files() {
     let (_, out, _) = place.say(&["info", "sheen"]);
     assert!(out.contains("keyword parameters:") && out.contains("string shadowing: "), "{out}");
     assert_eq!(place.say(&["info", "distance"]).1.lines().count(), 2, "a builtin and an overload of the header");
+    let (_, out, _) = place.say(&["info"]);
+    assert!(out.contains("closures that are known but not run yet:\n    phong ward"), "{out}");
+    place.file("own.osl", "float twice(float x) { return 2 * x; }\n");
+    let (_, out, _) = place.say(&["info", "twice", "--stdosl", "own.osl"]);
+    assert_eq!(out, "float twice(float x)\n");
     let (code, _, error) = place.say(&["info", "shene"]);
     assert_eq!((code, error.lines().count()), (2, 2), "{error}");
     assert!(error.contains("did you mean `sheen`?"));

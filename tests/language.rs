@@ -454,3 +454,20 @@ fn the_number_of_knots_may_vary() {
     machine.shade(&group, &Points::new(1));
     assert_eq!(machine.take_reports(), [Report::Output("1.5 1.5\n".to_owned())]);
 }
+
+#[test]
+fn deep_nesting_is_checked_once() {
+    let deep = |open: &str, seed: &str, close: &str| format!("{}{seed}{}", open.repeat(60), close.repeat(60));
+    let calls = deep("f(noise(", "0", "))");
+    run(&format!("color f(color c) {{ return c; }} shader s() {{ color c = {calls}; }}"), 1);
+    let updates = deep("a[(", "a[0] += 1", ")] += 1");
+    run(&format!("shader s() {{ int a[2] = {{0, 0}}; {updates}; }}"), 1);
+    let places = deep("a[(", "a[0][0] += 1", ") > 0][0] += 1");
+    run(&format!("shader s() {{ vector a[2] = {{0, 0}}; {places}; }}"), 1);
+    with(
+        "float f(float x) { return x; } string f(string s) { return s; } void g(color c) { printf(\"%g\", c); }",
+        "g(cellnoise(color(0)[0], 0)); vector v = vector(1, 2, 3); v[1] += 2; printf(\" %g\", v);",
+        1,
+        "0.611068 0.185824 0.0413061 1 4 3",
+    );
+}

@@ -2,9 +2,9 @@
 
 use super::info_file::shader_text;
 use super::{CompileArgs, Failure, say};
-use crate::compile::{CompileError, STDOSL};
+use crate::compile::CompileError;
 use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
-use crate::lang::closures::{ClosureSpec, ClosureTable, ParamKind, ParamSpec};
+use crate::lang::closures::{self, ClosureSpec, ClosureTable, ParamKind, ParamSpec};
 use crate::scene::nearest;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub struct InfoArgs {
 /// Prints what is known of the subject.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let table = ClosureTable::standard();
-    let header = header_functions();
+    let header = header_functions(args)?;
     let Some(subject) = &args.subject else {
         say(&everything(&table, &header));
         return Ok(());
@@ -48,11 +48,12 @@ fn file(args: &InfoArgs, path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The functions that the standard header writes in the language itself.
-fn header_functions() -> Vec<FunctionDecl> {
-    let parsed = velour_grammar::parse("stdosl.osl", STDOSL, &velour_grammar::Options::default());
+/// The functions that the standard header, built in or given, writes in the language itself.
+fn header_functions(args: &InfoArgs) -> Result<Vec<FunctionDecl>, Failure> {
+    // The header is read before any text; here nothing follows it.
+    let parsed = velour_grammar::parse("info", "", &args.compile.compiler()?.options);
     let function = |item| if let Item::Function(function) = item { Some(function) } else { None };
-    parsed.file.items.into_iter().filter_map(function).collect()
+    Ok(parsed.file.items.into_iter().filter_map(function).collect())
 }
 
 fn everything(table: &ClosureTable, header: &[FunctionDecl]) -> String {
@@ -60,6 +61,7 @@ fn everything(table: &ClosureTable, header: &[FunctionDecl]) -> String {
     for spec in &table.specs {
         out += &format!("    {}\n        {}\n", closure_head(spec), spec.doc);
     }
+    out += &format!("\nclosures that are known but not run yet:\n{}", columns(closures::NOT_YET));
     let names = function_names(header);
     let (missing, present): (Vec<&str>, Vec<&str>) = names.into_iter().partition(|name| NOT_YET.contains(name));
     out += &format!("\nfunctions:\n{}", columns(&present));

@@ -5,7 +5,6 @@ use crate::closure::print::tree_text;
 use crate::closure::settings::Shadowing;
 use crate::closure::{Layering, Lobes, Settings};
 use crate::exec::{Group, Machine, Points, Report};
-use crate::ir::lower::Binding;
 use crate::math::columns::Column3;
 use glam::Vec3;
 use std::path::PathBuf;
@@ -48,7 +47,7 @@ pub fn run(args: &TreeArgs) -> Result<(), Failure> {
     })?;
     let mut builder = shader.group();
     for pair in args.param.chunks(2) {
-        builder = builder.bind(&pair[0], binding(&pair[1]));
+        builder = builder.text(&pair[0], &pair[1]);
     }
     let group = builder.build().map_err(|error| Failure::Wrong(error.to_string()))?;
     if args.program {
@@ -68,16 +67,6 @@ pub fn run(args: &TreeArgs) -> Result<(), Failure> {
     }
     say(&format!("{}\n", if text.is_empty() { "0" } else { &text }));
     Ok(())
-}
-
-/// Numbers when the text is numbers, a string otherwise.
-fn binding(text: &str) -> Binding {
-    let parts = text.split([',', ' ']).filter(|part| !part.is_empty());
-    let numbers: Result<Vec<f64>, _> = parts.map(str::parse).collect();
-    match numbers {
-        Ok(numbers) if !numbers.is_empty() => Binding::Numbers(numbers),
-        _ => Binding::Strings(vec![text.to_owned()]),
-    }
 }
 
 fn point(args: &TreeArgs) -> Points {

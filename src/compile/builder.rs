@@ -2,11 +2,12 @@
 
 use super::Shader;
 use super::error::{GroupError, GroupSubject};
+use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
 use crate::exec::{Group, Locate};
 use crate::ir::lower::value::SPANS_PER_LAYER;
 use crate::ir::lower::{Binding, Layer, LowerOptions, lower};
 use crate::lang::closures::ClosureTable;
-use crate::lang::types::{Base, Length, Type};
+use crate::lang::types::{Base, Type};
 use crate::optimize::{OptimizeOptions, optimize};
 use std::sync::Arc;
 use velour_grammar::{Sources, Span};
@@ -62,6 +63,30 @@ impl GroupBuilder {
             layer.bindings.push((name.to_owned(), binding));
         }
         self
+    }
+
+    /// Sets a parameter of the last layer from a value that was written with a type; an int may stand for a float.
+    pub fn bind_as(mut self, name: &str, binding: Binding, written: &Type) -> Self {
+        if let Some(Err(error)) = self.layers.last().map(|layer| checked_type(layer, name, written)) {
+            self.error.get_or_insert(error);
+        }
+        self.bind(name, binding)
+    }
+
+    /// Sets a parameter of the last layer from text: numbers with commas or spaces between, or a string as it is.
+    pub fn text(self, name: &str, text: &str) -> Self {
+        let string = |layer: &Layer| {
+            let ty = find_type(layer, name).ok();
+            ty.is_some_and(|ty| ty.element_type().base() == Some(Base::String))
+        };
+        let parts = text.split([',', ' ']).filter(|part| !part.is_empty());
+        let numbers: Result<Vec<f64>, _> = parts.map(str::parse).collect();
+        match numbers {
+            Ok(numbers) if !numbers.is_empty() && !self.layers.last().is_some_and(string) => {
+                self.bind(name, Binding::Numbers(numbers))
+            }
+            _ => self.bind(name, Binding::Strings(vec![text.to_owned()])),
+        }
     }
 
     /// Connects an output of an earlier layer to a parameter of a later one.
@@ -134,76 +159,4 @@ fn locator(sources: Vec<Sources>) -> Locate {
         let place = sources.get(layer as usize).and_then(|s| s.locate(Span { first, last: first }));
         place.map_or("shader".to_owned(), |p| format!("{}:{}:{}", p.file, p.line, p.column))
     })
-}
-
-fn param_error(layer: &Layer, name: &str, message: String) -> GroupError {
-    let shader = &layer.shader;
-    let names: Vec<&str> = shader.params.iter().map(|p| shader.variables[p.var.0 as usize].name.as_str()).collect();
-    let help = if names.is_empty() {
-        "the shader has no parameters".to_owned()
-    } else {
-        format!("its parameters are {}", names.join(", "))
-    };
-    let subject = GroupSubject::Param { layer: layer.name.clone(), name: name.to_owned() };
-    GroupError { message, help, subject }
-}
-
-/// The type of a parameter or of the part of it that a path names.
-fn find_type(layer: &Layer, path: &str) -> Result<Type, GroupError> {
-    let end = path.find(['.', '[']).unwrap_or(path.len());
-    let variables = &layer.shader.variables;
-    let found = layer.shader.params.iter().map(|p| &variables[p.var.0 as usize]).find(|v| v.name == path[..end]);
-    let no_such = || param_error(layer, path, format!("shader `{}` has no parameter `{path}`", layer.shader.name));
-    let found = found.ok_or_else(no_such)?;
-    let mut ty = found.ty.clone();
-    let open = layer.shader.params.iter().any(|p| p.open && variables[p.var.0 as usize].name == path);
-    if open {
-        ty.length = Length::Unsized;
-    }
-    for step in path[end..].split_inclusive([']', '.']).flat_map(|s| s.split('.')).filter(|s| !s.is_empty()) {
-        ty = match step.strip_prefix('[') {
-            Some(_) if ty.is_array() => ty.element_type(),
-            Some(_) if ty.base().is_some_and(Base::is_triple) => Type::FLOAT,
-            Some(_) => return Err(no_such()),
-            None => {
-                let name = step.split('[').next().unwrap_or(step);
-                let field = ty.structure().and_then(|s| s.fields.iter().find(|(field, _)| field == name));
-                let mut field = field.ok_or_else(no_such)?.1.clone();
-                if step.contains('[') {
-                    field = field.element_type();
-                }
-                field
-            }
-        };
-    }
-    Ok(ty)
-}
-
-fn checked_binding(layer: &Layer, name: &str, binding: &Binding) -> Result<(), GroupError> {
-    let ty = find_type(layer, name)?;
-    let text = ty.element_type().base() == Some(Base::String);
-    let structure = ty.structure().is_some();
-    let fits = match binding {
-        Binding::Numbers(_) => !text && ty.element_type().base() != Some(Base::Closure),
-        Binding::Strings(_) => text || structure,
-        Binding::Connection(..) => true,
-    };
-    if fits {
-        return Ok(());
-    }
-    let given = if matches!(binding, Binding::Numbers(_)) { "numbers" } else { "a string" };
-    Err(param_error(layer, name, format!("parameter `{name}` is a {ty}, not {given}")))
-}
-
-/// May an output of one type feed a parameter of another?
-fn connects(from: &Type, to: &Type) -> bool {
-    if from == to || (from.element == to.element && from.is_array() && to.length == Length::Unsized) {
-        return true;
-    }
-    let numeric = |base: Base| base.is_number() || base.is_triple();
-    match (from.base(), to.base()) {
-        (Some(Base::Closure), Some(Base::Closure)) | (Some(Base::String), Some(Base::String)) => true,
-        (Some(a), Some(b)) => numeric(a) && numeric(b),
-        _ => false,
-    }
 }

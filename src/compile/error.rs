@@ -42,8 +42,7 @@ pub struct GroupError {
     pub message: String,
     /// The way out.
     pub help: String,
-    /// Which binding or connection is wrong, counted in the order they were given to their layer; a host that knows
-    /// where each came from can name the place.
+    /// What is wrong, by the names it was given with; a host that knows where those were written can name the place.
     pub subject: GroupSubject,
 }
 

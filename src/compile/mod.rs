@@ -5,6 +5,7 @@
 
 mod builder;
 mod error;
+mod fit;
 
 pub use builder::GroupBuilder;
 pub use error::{CompileError, GroupError, GroupSubject};

@@ -3,5 +3,6 @@
 pub mod builtins;
 pub mod closures;
 pub mod globals;
+pub mod path;
 pub mod symbols;
 pub mod types;

@@ -2,7 +2,7 @@
 
 use super::error::{Place, SceneError};
 use super::geometry::{Geometry, Shape};
-use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamHints, ParamType, ParamValue, Usage, Values};
+use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
 use super::load::{Background, Camera, Material, Options, Scene, within};
 use super::mesh::{MaterialNames, add_mesh};
 use super::nearest::nearest;
@@ -310,14 +310,7 @@ fn group_child(
 
 /// `int 3`, `float .5`, `color 1 2 3` and so on; anything else is a string, as testrender reads it.
 fn parameter_value(name: &str, text: &str, place: Place) -> ParamValue {
-    let plain = |kind, values| ParamValue {
-        kind,
-        array: None,
-        name: name.to_owned(),
-        values,
-        hints: ParamHints::default(),
-        place: place.clone(),
-    };
+    let plain = |kind, values| ParamValue { kind, array: None, name: name.to_owned(), values, place: place.clone() };
     let (word, rest) = text.split_once(' ').unwrap_or(("", text));
     let number = rest.trim();
     if word == "int"

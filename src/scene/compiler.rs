@@ -1,11 +1,12 @@
 //! The compiler of a scene's shader groups: finds shader files, compiles each once, binds and joins them.
 
 use super::error::SceneError;
-use super::group::{GroupCompiler, GroupSpec, Layer, Values};
+use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Values};
 use super::load::within;
 use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Shader};
 use crate::exec::Group;
 use crate::ir::lower::Binding;
+use crate::lang::types::{Base, Length, Type};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -78,7 +79,7 @@ impl GroupCompiler for ShaderFiles {
                     Values::Ints(values) => Binding::Numbers(values.iter().map(|&x| f64::from(x)).collect()),
                     Values::Strings(values) => Binding::Strings(values.clone()),
                 };
-                builder = builder.bind(&param.name, binding);
+                builder = builder.bind_as(&param.name, binding, &written(param));
             }
         }
         for c in &spec.connections {
@@ -86,6 +87,21 @@ impl GroupCompiler for ShaderFiles {
         }
         builder.build().map_err(|error| placed(error, spec))
     }
+}
+
+/// The type that a value was written with.
+fn written(param: &ParamValue) -> Type {
+    let base = match param.kind {
+        ParamType::Int => Base::Int,
+        ParamType::Float => Base::Float,
+        ParamType::Color => Base::Color,
+        ParamType::Point => Base::Point,
+        ParamType::Vector => Base::Vector,
+        ParamType::Normal => Base::Normal,
+        ParamType::Matrix => Base::Matrix,
+        ParamType::String => Base::String,
+    };
+    Type::of(base).array(param.array.map_or(Length::Single, |count| Length::Fixed(count as u32)))
 }
 
 /// A group's error at the place in the scene that it is about.

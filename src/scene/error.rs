@@ -14,13 +14,6 @@ pub struct Place {
     pub column: u32,
 }
 
-impl Place {
-    /// The start of a file, for mistakes that concern all of it.
-    pub fn start_of(file: &str) -> Self {
-        Place { file: file.into(), line: 1, column: 1 }
-    }
-}
-
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}:{}", self.file, self.line, self.column)

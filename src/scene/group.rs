@@ -35,6 +35,7 @@ impl Usage {
 
 /// The type that a parameter value was written with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// The variants are the language's own types.
 #[allow(missing_docs)]
 pub enum ParamType {
     Int,
@@ -70,6 +71,7 @@ impl ParamType {
 
 /// The numbers or strings of a parameter, padded with zeros or empty strings to the declared size.
 #[derive(Clone, Debug, PartialEq)]
+// The variants say all there is to say.
 #[allow(missing_docs)]
 pub enum Values {
     Floats(Vec<f32>),
@@ -77,16 +79,8 @@ pub enum Values {
     Strings(Vec<String>),
 }
 
-/// What the text says of a parameter beside its value.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ParamHints {
-    /// The value comes from the geometry when that has one (`lockgeom = 0` says the same).
-    pub interpolated: bool,
-    /// The value may change between renders and must not be folded away.
-    pub interactive: bool,
-}
-
-/// One parameter value of a layer.
+/// One parameter value of a layer. Hints after a value (`[[int lockgeom=0]]`, `interpolated`, `interactive`) are
+/// accepted and have no effect here: geometry carries no values for parameters, and every group is compiled anew.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParamValue {
     /// The type as written.
@@ -97,8 +91,6 @@ pub struct ParamValue {
     pub name: String,
     /// The values.
     pub values: Values,
-    /// The hints.
-    pub hints: ParamHints,
     /// Where the name is written.
     pub place: Place,
 }

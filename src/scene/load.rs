@@ -139,7 +139,7 @@ impl Scene {
         let mut folders = vec![source.folder.clone()];
         folders.extend(search.iter().cloned());
         let mut builder = Builder::new(source.name.to_string(), folders, compiler);
-        for element in root.children() {
+        for element in root.only_children()? {
             builder.element(&element)?;
         }
         builder.finish(root.place())

@@ -17,7 +17,7 @@ mod xml;
 pub use compiler::ShaderFiles;
 pub use error::{Place, SceneError};
 pub use geometry::{Geometry, Object, Primitive, Shape};
-pub use group::{Connection, GroupCompiler, GroupSpec, Layer, ParamHints, ParamType, ParamValue, Usage, Values};
+pub use group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
 pub use load::{Background, Camera, Material, Options, Scene, SceneSource};
 pub use nearest::nearest;
 pub use spec::parse_group;

@@ -1,7 +1,7 @@
 //! Parses a shader group's text: `param`, `shader` and `connect` statements, quotes optional, ended by `;` or `,`.
 
 use super::error::{Place, SceneError};
-use super::group::{Connection, Layer, ParamHints, ParamType, ParamValue, Values};
+use super::group::{Connection, Layer, ParamType, ParamValue, Values};
 use super::nearest::nearest;
 
 /// What a group's text holds.
@@ -200,8 +200,8 @@ impl<'t> Parser<'t> {
             return Err(SceneError::at(place, "a parameter's name expected"));
         }
         let (values, array) = self.values(kind, array)?;
-        let hints = self.hints()?;
-        self.out.pending.push(ParamValue { kind, array, name, values, hints, place });
+        self.hints()?;
+        self.out.pending.push(ParamValue { kind, array, name, values, place });
         self.end_of_statement()
     }
 
@@ -300,12 +300,11 @@ impl<'t> Parser<'t> {
         Ok(out)
     }
 
-    /// `[[ int lockgeom = 0, … ]]`, or nothing.
-    fn hints(&mut self) -> Result<ParamHints, SceneError> {
-        let mut hints = ParamHints::default();
+    /// `[[ int lockgeom = 0, … ]]`, or nothing. Read so that scenes of other renderers load; hints have no effect here.
+    fn hints(&mut self) -> Result<(), SceneError> {
         self.skip_space();
         if !self.rest().starts_with("[[") {
-            return Ok(hints);
+            return Ok(());
         }
         self.at += 2;
         loop {
@@ -319,13 +318,8 @@ impl<'t> Parser<'t> {
             }
             let value =
                 if self.take_char('=') { self.until(&[' ', ',', ']', ';', '\n']).parse::<i32>().ok() } else { None };
-            let Some(value) = value else {
+            if value.is_none() {
                 return Err(SceneError::at(place, format!("hint `{name}` needs `= INTEGER`")));
-            };
-            match name {
-                "lockgeom" => hints.interpolated = value == 0,
-                "interpolated" => hints.interpolated = value != 0,
-                _ => hints.interactive = value != 0,
             }
             if !self.take_char(',') {
                 break;
@@ -334,6 +328,6 @@ impl<'t> Parser<'t> {
         if !(self.take_char(']') && self.take_char(']')) {
             return Err(SceneError::at(self.here(), "`]]` expected at the end of the hints"));
         }
-        Ok(hints)
+        Ok(())
     }
 }

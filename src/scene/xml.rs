@@ -52,7 +52,25 @@ impl<'d, 'i> Element<'d, 'i> {
         }
     }
 
-    /// The child elements; text between them is an error unless it is space.
+    /// The child elements, for an element that holds nothing else.
+    ///
+    /// # Errors
+    /// There is text between them.
+    pub fn only_children(&self) -> Result<impl Iterator<Item = Element<'d, 'i>> + use<'d, 'i>, SceneError> {
+        for text in self.node.children().filter(|n| n.is_text()) {
+            let written = text.text().unwrap_or_default();
+            if let Some(at) = written.find(|c: char| !c.is_whitespace()) {
+                // Entities make the text shorter than its source; then the start has to do.
+                let exact = text.range().len() == written.len();
+                let place = self.place_at(text.range().start + if exact { at } else { 0 });
+                let error = SceneError::at(place, format!("text in <{}>, which holds only elements", self.tag()));
+                return Err(error.with_help("remove it, or put it between `<!--` and `-->`"));
+            }
+        }
+        Ok(self.children())
+    }
+
+    /// The child elements, whatever is between them.
     pub fn children(&self) -> impl Iterator<Item = Element<'d, 'i>> + use<'d, 'i> {
         let file = self.file.clone();
         self.node.children().filter(|n| n.is_element()).map(move |node| Element { node, file: file.clone() })

@@ -6,6 +6,7 @@ use super::{Bound, Builder, Frame, Lower};
 use crate::check::typed::{Shader, ShaderParam, VarId};
 use crate::ir::program::*;
 use crate::lang::globals::Global;
+use crate::lang::path::{Step, part, root, steps};
 use crate::lang::symbols::Symbol;
 use crate::lang::types::{Base, Element, Length, Type};
 use std::collections::HashMap;
@@ -138,7 +139,7 @@ impl Lower<'_> {
         }
         self.bind(var, value);
         for (target, binding) in layer.bindings.iter().filter(|(target, _)| *target != name && root(target) == name) {
-            self.bind_part(var, &ty, &target[name.len()..], binding, finished);
+            self.bind_part(var, &ty, target, binding, finished);
         }
     }
 
@@ -165,47 +166,61 @@ impl Lower<'_> {
         finished: &[HashMap<String, (Value, Type)>],
     ) {
         let Some(mut whole) = self.vars[var.0 as usize].clone() else { return };
-        let replaced = self.with_part(&whole.value, ty, path, binding, finished);
-        whole.value = replaced;
+        // Paths have been checked, but for the bounds of an array whose length another binding has set since.
+        let steps = steps(path).unwrap_or_default();
+        let inside = steps.iter().try_fold(ty.clone(), |ty, step| part(&ty, step));
+        let Ok(of) = inside else { return };
+        let new = self.bound_value(binding, &of, finished);
+        whole.value = self.with_part(&whole.value, ty, &steps, &new);
         self.vars[var.0 as usize] = Some(whole);
     }
 
-    /// The value with the part at `path` replaced.
-    fn with_part(
-        &mut self,
-        value: &Value,
-        ty: &Type,
-        path: &str,
-        binding: &Binding,
-        finished: &[HashMap<String, (Value, Type)>],
-    ) -> Value {
-        let Some((step, rest)) = next_step(path) else { return self.bound_value(binding, ty, finished) };
+    /// The value with the part that the steps lead to replaced. Elements of arrays are stored in place.
+    fn with_part(&mut self, value: &Value, ty: &Type, steps: &[Step], new: &Value) -> Value {
+        let Some((step, rest)) = steps.split_first() else { return self.replaced(value, new) };
+        let Ok(inner) = part(ty, step) else { return value.clone() };
         match (value, step) {
             (Value::Struct(fields), Step::Field(name)) => {
-                let structure = ty.structure().cloned();
-                let at = structure.as_ref().and_then(|s| s.fields.iter().position(|(field, _)| *field == name));
-                let (Some(structure), Some(at)) = (structure, at) else { return value.clone() };
+                let position = ty.structure().and_then(|s| s.fields.iter().position(|(field, _)| field == name));
                 let mut fields = fields.clone();
-                fields[at] = self.with_part(&fields[at].clone(), &structure.fields[at].1, rest, binding, finished);
+                if let Some(field) = position.and_then(|at| fields.get_mut(at)) {
+                    *field = self.with_part(&field.clone(), &inner, rest, new);
+                }
                 Value::Struct(fields)
             }
-            (Value::Array { .. }, Step::Index(at)) => {
-                let index = self.b.int(at);
+            (_, Step::Index(at)) if ty.is_array() => {
+                let index = self.b.int(*at as i32);
                 let item = self.element(value, index);
-                let new = self.bound_value(binding, &ty.element_type(), finished);
-                self.store(&item, &new);
+                self.with_part(&item, &inner, rest, new);
                 value.clone()
             }
-            (Value::Regs(regs), Step::Index(at)) => {
-                let new = self.bound_value(binding, &Type::FLOAT, finished);
-                let new = self.regs(&new);
-                let mut regs = regs.clone();
-                if let (Some(slot), Some(&new)) = (regs.get_mut(at.max(0) as usize), new.first()) {
+            (Value::Regs(_) | Value::Item { .. }, Step::Index(at)) => {
+                let (mut regs, new) = (self.regs(value), self.regs(new));
+                if let (Some(slot), Some(&new)) = (regs.get_mut(*at as usize), new.first()) {
                     *slot = new;
                 }
-                Value::Regs(regs)
+                let whole = Value::Regs(regs);
+                if matches!(value, Value::Regs(_)) {
+                    return whole;
+                }
+                self.store(value, &whole);
+                value.clone()
             }
             _ => value.clone(),
+        }
+    }
+
+    /// What stands for `value` once it is `new`: elements of arrays take it in, anything else gives way.
+    fn replaced(&mut self, value: &Value, new: &Value) -> Value {
+        match (value, new) {
+            (Value::Struct(old), Value::Struct(new)) => {
+                Value::Struct(old.iter().zip(new).map(|(old, new)| self.replaced(old, new)).collect())
+            }
+            (Value::Item { .. } | Value::Array { start: Some(_), .. }, _) => {
+                self.store(value, new);
+                value.clone()
+            }
+            _ => new.clone(),
         }
     }
 
@@ -220,9 +235,10 @@ impl Lower<'_> {
                     (Some(a), Some(b)) => {
                         let regs = self.regs(&value);
                         let regs: Vec<Reg> = regs.into_iter().map(|reg| self.fixed(reg)).collect();
-                        // A triple that feeds a float is averaged, as OSL does.
-                        if a.is_triple() && b == Base::Float {
-                            return Value::Regs(vec![self.average(&regs)]);
+                        // A triple that feeds a number is averaged, as OSL does.
+                        if a.is_triple() && b.is_number() {
+                            let average = self.average(&regs);
+                            return Value::Regs(self.convert(&[average], Base::Float, b));
                         }
                         Value::Regs(self.convert(&regs, a, b))
                     }
@@ -240,23 +256,21 @@ impl Lower<'_> {
     /// An output of an earlier layer, or a part of one.
     fn part_of(&mut self, params: &HashMap<String, (Value, Type)>, name: &str) -> Option<(Value, Type)> {
         let (mut value, mut ty) = params.get(root(name))?.clone();
-        let mut path = &name[root(name).len()..];
-        while let Some((step, rest)) = next_step(path) {
-            (value, ty) = match (value, step) {
+        for step in steps(name)? {
+            let inner = part(&ty, &step).ok()?;
+            value = match (value, &step) {
                 (Value::Struct(fields), Step::Field(field)) => {
-                    let at = ty.structure()?.fields.iter().position(|(name, _)| *name == field)?;
-                    (fields[at].clone(), ty.structure()?.fields[at].1.clone())
+                    let at = ty.structure()?.fields.iter().position(|(name, _)| name == field)?;
+                    fields.get(at)?.clone()
                 }
-                (value @ Value::Array { .. }, Step::Index(at)) => {
-                    let index = self.b.int(at);
-                    (self.element(&value, index), ty.element_type())
+                (value, Step::Index(at)) if ty.is_array() => {
+                    let index = self.b.int(*at as i32);
+                    self.element(&value, index)
                 }
-                (Value::Regs(regs), Step::Index(at)) => {
-                    (Value::Regs(vec![*regs.get(at.max(0) as usize)?]), Type::FLOAT)
-                }
+                (value, Step::Index(at)) => Value::Regs(vec![*self.regs(&value).get(*at as usize)?]),
                 _ => return None,
             };
-            path = rest;
+            ty = inner;
         }
         Some((value, ty))
     }
@@ -278,7 +292,8 @@ impl Lower<'_> {
                 Value::Struct(s.fields.iter().map(|(_, ty)| self.constants(binding, ty, next)).collect())
             }
             Element::Base(base) => {
-                let single = matches!(binding, Binding::Numbers(n) if n.len() == 1) && base.is_triple();
+                // One number for a triple is spread; in an array or a struct what is missing is zero.
+                let single = *next == 0 && matches!(binding, Binding::Numbers(n) if n.len() == 1) && base.is_triple();
                 let mut regs = Vec::new();
                 for _ in 0..base.components() {
                     let value = constant_at(binding, *base, if single { 0 } else { *next });
@@ -365,25 +380,4 @@ fn constant_at(binding: &Binding, base: Base, at: usize) -> Const {
         }
         _ => zero_of(kind_of(base)),
     }
-}
-
-/// The parameter a path such as `a.b[2]` starts from.
-fn root(path: &str) -> &str {
-    &path[..path.find(['.', '[']).unwrap_or(path.len())]
-}
-
-enum Step {
-    Field(String),
-    Index(i32),
-}
-
-/// The first step of a path and the rest of it.
-fn next_step(path: &str) -> Option<(Step, &str)> {
-    if let Some(rest) = path.strip_prefix('.') {
-        let end = rest.find(['.', '[']).unwrap_or(rest.len());
-        return Some((Step::Field(rest[..end].to_owned()), &rest[end..]));
-    }
-    let inside = path.strip_prefix('[')?;
-    let (number, rest) = inside.split_once(']')?;
-    Some((Step::Index(number.trim().parse().ok()?), rest))
 }
