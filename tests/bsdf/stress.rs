@@ -27,7 +27,7 @@ fn case(random: &mut Random, k: u32) -> (Vec3, Vec3, f32) {
             let jitter = Vec3::new(random.number() - 0.5, random.number() - 0.5, random.number() - 0.5) * offset;
             (Vec3::new(-wo.x, -wo.y, wo.z) + jitter).normalize()
         }
-        _ => direction(random, k % 3 == 1 && k % 2 == 0),
+        _ => direction(random, k % 3 == 1 && k.is_multiple_of(2)),
     };
     let r = match k % 17 {
         0 => 0.0,

@@ -273,7 +273,7 @@ fn lanes_know_nothing_of_each_other() {
         (samples, out)
     };
     let (samples, out) = run(0..128);
-    assert!(samples.event.iter().any(|&e| e == event::GLOSSY) && samples.event.iter().any(|&e| e == event::DIFFUSE));
+    assert!(samples.event.contains(&event::GLOSSY) && samples.event.contains(&event::DIFFUSE));
     for k in 0..128 {
         let (s, o) = run(k..k + 1);
         assert_eq!(s.weight.get(0), samples.weight.get(k), "lane {k}");

@@ -113,9 +113,17 @@ pub fn ball(n: usize) -> String {
 fn waves_and_tiles() {
     let scene = scene(FIGURE1);
     for round in 0..2 {
-        for (tile_size, wave_size) in [(16, 4096), (16, 2048), (16, 1024), (16, 512), (16, 8192), (8, 1024), (32, 4096)] {
-            let settings =
-                Settings { width: 320, height: 128, samples: 64, threads: 1, tile_size, wave_size, ..Settings::default() };
+        for (tile_size, wave_size) in [(16, 4096), (16, 2048), (16, 1024), (16, 512), (16, 8192), (8, 1024), (32, 4096)]
+        {
+            let settings = Settings {
+                width: 320,
+                height: 128,
+                samples: 64,
+                threads: 1,
+                tile_size,
+                wave_size,
+                ..Settings::default()
+            };
             let about = render(&scene, &settings.with_options(&scene.options), &Silent).unwrap().about;
             let rate = about.paths as f64 / about.seconds_tracing * 1e-6;
             println!("{round}: tile {tile_size}, wave {wave_size}: {rate:.2} M paths/s");
