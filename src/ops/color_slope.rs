@@ -1,4 +1,4 @@
-//! Derivatives of [`transformc`](super::color::transformc): how the result moves when the colour moves.
+//! Derivatives of [`super::color::transformc`]: how the result moves when the colour moves.
 //!
 //! Each function gives the change of its namesake in [`super::color`] at a place and for a direction there. At the
 //! edges where formulas meet, it is the change on the side that the value is computed on.
