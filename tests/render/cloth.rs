@@ -1,5 +1,6 @@
 //! Cloth in closed rooms and under lights, and what happens to cloth whose parameters are not numbers.
 
+use super::determinism::same_however_it_is_cut;
 use super::materials::{middle, picture_with};
 use velour::closure::Layering;
 use velour::exec::Report;
@@ -67,17 +68,7 @@ fn bits(change: impl FnOnce(&mut Settings)) -> Vec<u32> {
 
 #[test]
 fn a_closed_room_of_woven_cloth_is_the_same_however_it_is_cut() {
-    let reference = bits(|s| s.threads = 1);
-    assert!(reference == bits(|s| s.threads = 2), "threads");
-    for width in [1, 8, 127] {
-        assert!(reference == bits(|s| s.batch_width = width), "batch width {width}");
-    }
-    for size in [1, 7, 64] {
-        assert!(reference == bits(|s| s.tile_size = size), "tile size {size}");
-    }
-    for size in [1, 100, 100_000] {
-        assert!(reference == bits(|s| s.wave_size = size), "wave size {size}");
-    }
+    same_however_it_is_cut(|change| bits(change));
 }
 
 /// A cloth whose roughness is not a number for u above 1/2: there the sheen is gone and the base is as without it.
