@@ -4,8 +4,8 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use glam::Vec3;
 use multiversion::multiversion;
-use velour::bsdf::Scatter;
 use velour::bsdf::sheen::{EXACT, Sheen};
+use velour::bsdf::{Scatter, params};
 use velour::closure::tree::{Floats, Ints, NodeId, Param, Tree};
 use velour::closure::{Evaluation, Lobes, Samples, Settings};
 use velour::lang::closures::ClosureTable;
@@ -127,7 +127,7 @@ fn by_hand(
 #[divan::bench]
 fn cloth_by_hand(bencher: Bencher) {
     let (wo, wi) = (directions(1), directions(2));
-    let sheen = Sheen::<EXACT, true>::prepare([0.3, 0.1, 0.0, 0.0]);
+    let sheen = Sheen::<EXACT, true>::prepare(params([0.3, 0.1]));
     let alpha: Vec<f32> = wo.z.iter().map(|&c| 1.0 - 0.8 * sheen.albedo(c)).collect();
     let (mut out, mut pdf) = (vec![0.0; LANES], vec![0.0; LANES]);
     bencher.counter(ItemsCount::new(LANES)).bench_local(|| {

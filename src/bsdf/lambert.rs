@@ -1,6 +1,6 @@
 //! Lambert's reflection and transmission: the same radiance in every direction of one hemisphere.
 
-use super::{Eval, Scatter, View};
+use super::{Eval, Params, Scatter, Side, View};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::Vec3;
 
@@ -16,10 +16,9 @@ pub struct Translucent;
 
 impl Scatter for Lambert {
     const PARAMS: usize = 0;
-    const TRANSMITS: bool = false;
 
     #[inline(always)]
-    fn prepare(_: [f32; 4]) -> Self {
+    fn prepare(_: Params) -> Self {
         Lambert
     }
 
@@ -42,10 +41,10 @@ impl Scatter for Lambert {
 
 impl Scatter for Translucent {
     const PARAMS: usize = 0;
-    const TRANSMITS: bool = true;
+    const SIDE: Side = Side::Other;
 
     #[inline(always)]
-    fn prepare(_: [f32; 4]) -> Self {
+    fn prepare(_: Params) -> Self {
         Translucent
     }
 

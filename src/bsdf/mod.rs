@@ -2,7 +2,7 @@
 //!
 //! A model is a small `Copy` struct of constants made once from its parameters. Its functions are branch-free and
 //! `#[inline(always)]`, so that a loop over lanes becomes SIMD code of whatever width the machine has, with equal bits
-//! on every width. Colors live in the weights of the lobes: the models themselves are achromatic (F = 1 or dielectric).
+//! on every width.
 //!
 //! The room knows no closure and no tree; [`crate::closure`] turns closures into these models.
 //!
@@ -10,8 +10,9 @@
 //! because a direction is evaluated twice for one viewer at least (a light and a sample), which with the short powers took
 //! cloth from 21 to 12 ns a direction, instead of computing it with every direction.
 //!
-//! Decision (2026-11-22): [`Eval`] holds one float for f |cos|, not a triple, because every model here is achromatic
-//! and color is a weight of the lobe, instead of three equal floats that the lane loops would multiply and keep.
+//! Decision (2026-11-22): [`Eval`] holds one float for f |cos|, not a triple, because most models are achromatic and color
+//! is a weight of the lobe, instead of three equal floats that the lane loops would multiply and keep. A model whose color
+//! depends on the directions (a conductor) gives it apart, in [`Scatter::color_from`], which the others never run.
 
 pub mod fresnel;
 pub mod lambert;
@@ -33,6 +34,31 @@ pub struct Eval {
     pub pdf: f32,
 }
 
+/// The most parameters that a model can have.
+pub const MAX_PARAMS: usize = 12;
+
+/// The parameters of a model; those beyond [`Scatter::PARAMS`] are never read.
+pub type Params = [f32; MAX_PARAMS];
+
+/// Fills up parameters with zeros.
+#[inline(always)]
+pub fn params<const N: usize>(values: [f32; N]) -> Params {
+    let mut out = [0.0; MAX_PARAMS];
+    out[..N].copy_from_slice(&values);
+    out
+}
+
+/// On which side of the surface a model scatters, as seen from the viewer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// On the viewer's side: it reflects.
+    Same,
+    /// On the other side: it transmits.
+    Other,
+    /// On both.
+    Both,
+}
+
 /// Up to five numbers that a model derives from the viewer's direction.
 pub type View = [f32; 5];
 
@@ -40,12 +66,14 @@ pub type View = [f32; 5];
 ///
 /// Directions are unit, local (z = shading normal) and point away from the surface; `wo.z` is positive.
 pub trait Scatter: Copy {
-    /// How many of the four parameters it reads.
+    /// How many of the parameters it reads.
     const PARAMS: usize;
-    /// True when light leaves on the other side of the surface.
-    const TRANSMITS: bool;
+    /// Where light leaves the surface.
+    const SIDE: Side = Side::Same;
+    /// True when [`Scatter::color_from`] is not white everywhere.
+    const COLORED: bool = false;
     /// Makes the constants from parameters, which are clamped to what the model supports.
-    fn prepare(params: [f32; 4]) -> Self;
+    fn prepare(params: Params) -> Self;
     /// How many of the numbers of [`Scatter::view`] it uses.
     const VIEW: usize = 0;
     /// What depends on the viewer alone, computed once for all directions that are evaluated.
@@ -55,6 +83,11 @@ pub trait Scatter: Copy {
     }
     /// f |cos_i| and density of one direction; zero where the model scatters nothing, never NaN.
     fn eval_from(&self, wo: Vec3, view: View, wi: Vec3) -> Eval;
+    /// What f |cos_i| is multiplied with to give its color, >= 0.
+    #[inline(always)]
+    fn color_from(&self, _wo: Vec3, _view: View, _wi: Vec3) -> Vec3 {
+        Vec3::ONE
+    }
     /// A direction for three numbers in [0, 1); it may lie where `eval` gives zero, and is zero when there is none.
     fn sample_from(&self, wo: Vec3, view: View, xi: Vec3) -> Vec3;
     /// [`Scatter::eval_from`] without a view at hand.
@@ -62,12 +95,18 @@ pub trait Scatter: Copy {
     fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
         self.eval_from(wo, self.view(wo), wi)
     }
+    /// f |cos_i| with its color, 1/sr, without a view at hand.
+    #[inline(always)]
+    fn colored(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+        let view = self.view(wo);
+        self.color_from(wo, view, wi) * self.eval_from(wo, view, wi).f_cos
+    }
     /// [`Scatter::sample_from`] without a view at hand.
     #[inline(always)]
     fn sample(&self, wo: Vec3, xi: Vec3) -> Vec3 {
         self.sample_from(wo, self.view(wo), xi)
     }
-    /// Directional albedo at this cosine, an estimate that each model documents.
+    /// Directional albedo at this cosine (of its largest component), an estimate that each model documents.
     fn albedo(&self, cos: f32) -> f32;
     /// Mean of the albedo over the hemisphere, weighted by the cosine.
     ///

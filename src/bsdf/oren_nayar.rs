@@ -1,6 +1,6 @@
 //! Rough diffuse reflection of Oren and Nayar, the qualitative model of 1994.
 
-use super::{Eval, Scatter, View, select};
+use super::{Eval, Params, Scatter, View, select};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI};
@@ -50,10 +50,9 @@ impl OrenNayar {
 
 impl Scatter for OrenNayar {
     const PARAMS: usize = 1;
-    const TRANSMITS: bool = false;
 
     #[inline(always)]
-    fn prepare([sigma, ..]: [f32; 4]) -> Self {
+    fn prepare([sigma, ..]: Params) -> Self {
         // Beyond a slope of 1e3 the constants have reached their limits.
         let s2 = sigma.clamp(0.0, 1e3) * sigma.clamp(0.0, 1e3);
         OrenNayar { a: 1.0 - 0.5 * s2 / (s2 + 0.33), b: 0.45 * s2 / (s2 + 0.09) }

@@ -2,7 +2,7 @@
 
 use super::sheen::albedo::{AlbedoCurve, MIN_FITTED_ROUGHNESS};
 use super::sheen::charlie::sin2_half;
-use super::{Eval, Scatter, View, select};
+use super::{Eval, Params, Scatter, View, select};
 use crate::math::elementary::exp;
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf, uniform_hemisphere};
 use glam::Vec3;
@@ -37,10 +37,9 @@ impl Velvet {
 
 impl Scatter for Velvet {
     const PARAMS: usize = 1;
-    const TRANSMITS: bool = false;
 
     #[inline(always)]
-    fn prepare([m, ..]: [f32; 4]) -> Self {
+    fn prepare([m, ..]: Params) -> Self {
         let m = m.clamp(MIN_FITTED_ROUGHNESS, 1.0);
         let norm = FRAC_1_PI / (1.0 + 4.0 * m * m);
         Velvet { slope: -1.0 / (m * m), norm, albedo: AlbedoCurve::velvet(m) }

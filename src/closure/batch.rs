@@ -4,10 +4,18 @@
 //! an input, and turn the loops into SIMD. No target enables fused multiply-add, so every target gives the same bits.
 
 use super::settings::Layering;
-use crate::bsdf::{Scatter, View, select};
+use crate::bsdf::{MAX_PARAMS, Scatter, Side, View, select};
 use crate::math::frame::Frame;
 use glam::Vec3;
 use multiversion::multiversion;
+
+/// An array of twelve values of a function of the index, written out: the array functions of the standard library are not
+/// inlined in the lane loops, which would lose the lengths and with them their SIMD form.
+macro_rules! twelve {
+    ($f:ident) => {
+        [$f(0), $f(1), $f(2), $f(3), $f(4), $f(5), $f(6), $f(7), $f(8), $f(9), $f(10), $f(11)]
+    };
+}
 
 /// Where a loop takes a model's constants from.
 pub trait Source<M>: Copy {
@@ -21,9 +29,9 @@ pub trait Source<M>: Copy {
 #[derive(Clone, Copy)]
 pub struct Same<M>(pub M);
 
-/// A model a lane, from columns of parameters. Models with fewer than four parameters ignore the last columns.
+/// A model a lane, from columns of parameters; those that the model does not read may have any length.
 #[derive(Clone, Copy)]
-pub struct Each<'a>(pub [&'a [f32]; 4]);
+pub struct Each<'a>(pub [&'a [f32]; MAX_PARAMS]);
 
 impl<M: Copy> Source<M> for Same<M> {
     #[inline(always)]
@@ -40,14 +48,14 @@ impl<M: Copy> Source<M> for Same<M> {
 impl<M: Scatter> Source<M> for Each<'_> {
     #[inline(always)]
     fn narrow(self, lanes: usize) -> Self {
-        let [a, b, c, d] = self.0;
-        Each([&a[..lanes], &b[..lanes], &c[..lanes], &d[..lanes]])
+        let cut = |k: usize| if k < M::PARAMS { &self.0[k][..lanes] } else { &self.0[k][..0] };
+        Each(twelve!(cut))
     }
 
     #[inline(always)]
     fn at(&self, lane: usize) -> M {
-        let [a, b, c, d] = self.0;
-        M::prepare([a[lane], b[lane], c[lane], d[lane]])
+        let value = |k: usize| if k < M::PARAMS { self.0[k][lane] } else { 0.0 };
+        M::prepare(twelve!(value))
     }
 }
 
@@ -92,8 +100,7 @@ impl<'a> Views<'a> {
     /// Five columns, of which those beyond the model's are never read.
     #[inline(always)]
     fn narrow<M: Scatter>(self, lanes: usize) -> [&'a [f32]; 5] {
-        // Written out, because the array functions of the standard library are not inlined here, and the loop would
-        // lose the lengths and with them its SIMD form.
+        // Written out for the reason given at `twelve!`.
         let used = M::VIEW;
         [
             cut(self.0, 0, used, lanes),
@@ -182,12 +189,24 @@ pub fn evaluate_lanes<M: Scatter, S: Source<M>>(
     let (side, scale, pick) = (&from.side[..n], &from.scale[..n], &from.pick[..n]);
     let source = source.narrow(n);
     for i in 0..n {
-        let value = source.at(i).eval_from(wo.at(i), view_at::<M>(&views, i), wi.at(i));
-        let visible = if M::TRANSMITS { side[i] < 0.0 } else { side[i] > 0.0 };
+        let (model, view) = (source.at(i), view_at::<M>(&views, i));
+        let value = model.eval_from(wo.at(i), view, wi.at(i));
+        let visible = match M::SIDE {
+            Side::Same => side[i] > 0.0,
+            Side::Other => side[i] < 0.0,
+            Side::Both => true,
+        };
         let f_cos = select(visible, value.f_cos, 0.0) * scale[i];
-        x[i] += weight.x[i] * f_cos;
-        y[i] += weight.y[i] * f_cos;
-        z[i] += weight.z[i] * f_cos;
+        if M::COLORED {
+            let color = model.color_from(wo.at(i), view, wi.at(i));
+            x[i] += weight.x[i] * (f_cos * color.x);
+            y[i] += weight.y[i] * (f_cos * color.y);
+            z[i] += weight.z[i] * (f_cos * color.z);
+        } else {
+            x[i] += weight.x[i] * f_cos;
+            y[i] += weight.y[i] * f_cos;
+            z[i] += weight.z[i] * f_cos;
+        }
         pdf[i] += pick[i] * value.pdf;
     }
 }

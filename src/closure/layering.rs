@@ -6,8 +6,10 @@
 //! one its model documents; transmitting lobes count too, as what they pass has left the base's light.
 
 use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes};
+use super::kinds::Kind;
+use super::kinds::with_source;
 use super::settings::Layering;
-use super::surfaces::{Kind, NONE, Surface, Surfaces, with_source};
+use super::surfaces::{NONE, Surface, Surfaces};
 use crate::bsdf::GAUSS;
 use crate::bsdf::fresnel::dielectric;
 

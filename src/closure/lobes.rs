@@ -2,10 +2,11 @@
 
 use super::batch::{LobeColumns, Triples, evaluate_lanes, side_lanes};
 use super::flatten::Sweep;
+use super::kinds::with_source;
 use super::layering::Layers;
 use super::sampling::SampleScratch;
 use super::settings::Settings;
-use super::surfaces::{NONE, Surfaces, with_source};
+use super::surfaces::{NONE, Surfaces};
 use super::tree::{NodeId, Tree};
 use crate::lang::closures::ClosureTable;
 use crate::math::columns::Column3;

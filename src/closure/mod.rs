@@ -2,6 +2,7 @@
 
 mod batch;
 mod flatten;
+mod kinds;
 mod layering;
 mod leaves;
 pub mod lobes;

@@ -1,8 +1,10 @@
 //! Sampling: pick one lobe a lane, sample it, weigh the direction by the whole mixture.
 
 use super::batch::{Triples, pick_lanes, sample_lanes, weigh_lanes};
+use super::kinds::Kind;
+use super::kinds::with_source;
 use super::lobes::{Evaluation, Lobes};
-use super::surfaces::{Kind, NONE, with_source};
+use super::surfaces::NONE;
 use crate::bsdf::specular::{Specular, reflection, refraction};
 use crate::math::columns::Column3;
 use crate::math::frame::Frame;
@@ -165,13 +167,7 @@ impl Lobes {
             out.pdf[lane] = if good { pick } else { 0.0 };
         }
         if out.pdf[lane] > 0.0 {
-            out.event[lane] = match kind {
-                Kind::Reflection => event::DELTA_REFLECT,
-                Kind::Refraction => event::DELTA_REFRACT,
-                Kind::Transparent => event::STRAIGHT,
-                Kind::Microfacet { .. } => event::GLOSSY,
-                _ => event::DIFFUSE,
-            };
+            out.event[lane] = kind.event();
         }
     }
 }

@@ -10,102 +10,23 @@
 use super::batch::{
     Each, NormalColumns, Same, Triples, Views, localise_lanes, normal_lanes, tangent_lanes, view_lanes,
 };
-use crate::bsdf::Scatter;
-use crate::bsdf::sheen::shadowing::Shadowing;
+use super::kinds::{Kind, with_source};
+use crate::bsdf::{MAX_PARAMS, Params, Scatter};
 use crate::closure::tree::{Floats, Tree};
 use crate::math::columns::Column3;
 use crate::math::frame::Frame;
 use glam::Vec3;
 
-/// Runs an expression with the type `$M` of a surface's model and a source `$source` of its constants.
-/// Lobes of one direction have no lane loop and run nothing.
-macro_rules! with_source {
-    ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
-        use $crate::bsdf::sheen::shadowing::Shadowing;
-        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
-        use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar, velvet};
-        use $crate::closure::surfaces::Kind;
-        macro_rules! run {
-            ($model:ty) => {{
-                #[allow(unused)]
-                type $M = $model;
-                match $surface.params {
-                    $crate::closure::surfaces::Params::Uniform(params) => {
-                        let $source = $crate::closure::surfaces::same::<$M>(params);
-                        $body
-                    }
-                    $crate::closure::surfaces::Params::Columns(offsets) => {
-                        let $source = $crate::closure::surfaces::each(&$surfaces.data, offsets, $surfaces.lanes);
-                        $body
-                    }
-                }
-            }};
-        }
-        match $surface.kind {
-            Kind::Lambert => run!(lambert::Lambert),
-            Kind::Translucent => run!(lambert::Translucent),
-            Kind::OrenNayar => run!(oren_nayar::OrenNayar),
-            Kind::Velvet => run!(velvet::Velvet),
-            Kind::Sheen(Shadowing::Exact, true) => run!(Sheen<EXACT, true>),
-            Kind::Sheen(Shadowing::Exact, false) => run!(Sheen<EXACT, false>),
-            Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
-            Kind::Sheen(Shadowing::Published, false) => run!(Sheen<PUBLISHED, false>),
-            Kind::Sheen(Shadowing::Ashikhmin, _) => run!(Sheen<ASHIKHMIN, false>),
-            Kind::Microfacet { beckmann: false, refract: false } => run!(Microfacet<false, false>),
-            Kind::Microfacet { beckmann: false, refract: true } => run!(Microfacet<false, true>),
-            Kind::Microfacet { beckmann: true, refract: false } => run!(Microfacet<true, false>),
-            Kind::Microfacet { beckmann: true, refract: true } => run!(Microfacet<true, true>),
-            Kind::Reflection | Kind::Refraction | Kind::Transparent => {}
-        }
-    }};
-}
-pub(super) use with_source;
-
 /// No index.
 pub const NONE: u32 = u32::MAX;
 
-/// The scattering models a lobe can have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// Lambert's reflection.
-    Lambert,
-    /// Lambert's transmission.
-    Translucent,
-    /// Rough diffuse reflection.
-    OrenNayar,
-    /// Ashikhmin's velvet.
-    Velvet,
-    /// Sheen with its shadowing term, softened or not.
-    Sheen(Shadowing, bool),
-    /// Rough boundary.
-    Microfacet {
-        /// Beckmann's distribution, otherwise GGX.
-        beckmann: bool,
-        /// The refracting half, otherwise the reflecting one.
-        refract: bool,
-    },
-    /// Smooth mirror.
-    Reflection,
-    /// Smooth refraction.
-    Refraction,
-    /// Straight through.
-    Transparent,
-}
-
-impl Kind {
-    /// True for lobes of one direction, which have no density.
-    pub fn is_delta(self) -> bool {
-        matches!(self, Kind::Reflection | Kind::Refraction | Kind::Transparent)
-    }
-}
-
 /// Parameters of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Params {
+pub enum Values {
     /// The same in every lane.
-    Uniform([f32; 4]),
-    /// Offsets of four columns in [`Surfaces::data`].
-    Columns([u32; 4]),
+    Uniform(Params),
+    /// Offsets of columns in [`Surfaces::data`].
+    Columns([u32; MAX_PARAMS]),
 }
 
 /// One closure ready for the lane loops.
@@ -114,7 +35,7 @@ pub struct Surface {
     /// Its model.
     pub kind: Kind,
     /// Its parameters.
-    pub params: Params,
+    pub params: Values,
     /// Its frame, or [`NONE`] for [`Kind::Transparent`].
     pub frame: u32,
     /// Offset in [`Surfaces::data`] of a column that is 1 where the surface exists and 0 elsewhere; [`NONE`] for all 1.
@@ -127,7 +48,7 @@ pub struct Surface {
 
 /// What [`Surfaces::push`] makes a surface from.
 #[derive(Clone, Copy, Debug)]
-pub struct Request {
+pub struct Request<'a> {
     /// The model.
     pub kind: Kind,
     /// The closure's name.
@@ -135,9 +56,7 @@ pub struct Request {
     /// The frame, or [`NONE`].
     pub frame: u32,
     /// The parameters.
-    pub params: [Floats; 4],
-    /// How many of them count.
-    pub count: usize,
+    pub params: &'a [Floats],
     /// Which of them is an index of refraction.
     pub eta: Option<usize>,
     /// The gate, or [`NONE`].
@@ -248,25 +167,28 @@ impl Surfaces {
     /// A parameter of a surface in a lane.
     pub fn param(&self, surface: &Surface, index: usize, lane: usize) -> f32 {
         match surface.params {
-            Params::Uniform(values) => values[index],
-            Params::Columns(offsets) => self.data[offsets[index] as usize + lane],
+            Values::Uniform(values) => values[index],
+            Values::Columns(offsets) => self.data[offsets[index] as usize + lane],
         }
     }
 
-    /// Adds a surface and gives its index. Its first `count` parameters come from the tree; the one at `eta` is inverted
+    /// Adds a surface and gives its index. Its parameters come from the tree; the one at `eta` is inverted
     /// where the viewer is inside. Lanes with a parameter or normal that is not a number get a gate that is not a number.
     pub fn push(&mut self, tree: &Tree, request: Request) -> u32 {
-        let Request { kind, closure, frame, params, count, eta, gate } = request;
+        let Request { kind, closure, frame, params, eta, gate } = request;
         let (inside, broken) = match self.frames.get(frame as usize) {
             Some(f) => (f.any_inside && eta.is_some(), f.any_broken),
             None => (false, false),
         };
-        let constant = params.map(|p| if let Floats::Uniform(v) = p { v } else { f32::NAN });
-        let mut surface = Surface { kind, params: Params::Uniform(constant), frame, gate, view: 0, closure };
-        if inside || broken || constant[..count].iter().any(|v| !v.is_finite()) {
+        let mut constant = [0.0; MAX_PARAMS];
+        for (value, &param) in constant.iter_mut().zip(params) {
+            *value = if let Floats::Uniform(v) = param { v } else { f32::NAN };
+        }
+        let mut surface = Surface { kind, params: Values::Uniform(constant), frame, gate, view: 0, closure };
+        if inside || broken || constant.iter().any(|v| !v.is_finite()) {
             let bad = |this: &Self, lane: usize| {
                 broken && this.frames[frame as usize].broken[lane] > 0.0
-                    || params[..count].iter().any(|&p| !tree.float(p, lane).is_finite())
+                    || params.iter().any(|&p| !tree.float(p, lane).is_finite())
             };
             if (0..self.lanes).any(|lane| bad(self, lane)) {
                 let gates: u32 = self.data.len() as u32;
@@ -276,8 +198,9 @@ impl Surfaces {
                 }
                 surface.gate = gates;
             }
-            let mut offsets = [0; 4];
-            for k in 0..count {
+            // The others are never read.
+            let mut offsets = [0; MAX_PARAMS];
+            for k in 0..params.len() {
                 offsets[k] = self.data.len() as u32;
                 for lane in 0..self.lanes {
                     let value = tree.float(params[k], lane);
@@ -287,10 +210,7 @@ impl Surfaces {
                     self.data.push(if flip { 1.0 / value } else { value });
                 }
             }
-            // The others are never read for their value.
-            let first = offsets[0];
-            offsets[count..].fill(first);
-            surface.params = Params::Columns(offsets);
+            surface.params = Values::Columns(offsets);
         }
         self.list.push(surface);
         self.look();
@@ -379,11 +299,11 @@ pub fn fill(out: &mut Vec<f32>, tree: &Tree, from: Floats, lanes: usize) {
 }
 
 /// A parameter source made for a model: what [`with_source`] hands to a lane loop.
-pub fn same<M: Scatter>(params: [f32; 4]) -> Same<M> {
+pub fn same<M: Scatter>(params: Params) -> Same<M> {
     Same(M::prepare(params))
 }
 
 /// The columns of a varying surface.
-pub fn each(data: &[f32], offsets: [u32; 4], lanes: usize) -> Each<'_> {
+pub fn each(data: &[f32], offsets: [u32; MAX_PARAMS], lanes: usize) -> Each<'_> {
     Each(offsets.map(|at| &data[at as usize..at as usize + lanes]))
 }

@@ -9,7 +9,7 @@ use velour::bsdf::sheen::reference::{self, Model};
 use velour::bsdf::sheen::shadowing::{Exact, Published, soften};
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
 use velour::bsdf::velvet::Velvet;
-use velour::bsdf::{Eval, Scatter};
+use velour::bsdf::{Eval, Scatter, params};
 use velour::math::quadrature::gauss_legendre;
 
 static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
@@ -50,7 +50,7 @@ fn hold(worst: f64, bar: f64, what: &str) {
 }
 
 fn sheen<const S: u8, const SOFT: bool>(r: f64) -> Sheen<S, SOFT> {
-    Sheen::prepare([r as f32, 0.1, 0.0, 0.0])
+    Sheen::prepare(params([r as f32, 0.1]))
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn sheen_albedo() {
 
 #[test]
 fn velvet() {
-    let velvet = |m: f64| Velvet::prepare([m as f32, 0.0, 0.0, 0.0]);
+    let velvet = |m: f64| Velvet::prepare(params([m as f32]));
     let (mut d, mut f, mut quadrature, mut curve) = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
     for row in rows("velvet_d") {
         let c = row.get("cos_h");
@@ -259,7 +259,7 @@ fn microfacet_distributions() {
 fn oren_nayar() {
     let mut worst = 0.0f64;
     for row in rows("oren_nayar") {
-        let model = OrenNayar::prepare([row.get("sigma_rad") as f32, 0.0, 0.0, 0.0]);
+        let model = OrenNayar::prepare(params([row.get("sigma_rad") as f32]));
         let wo = narrow(direction(row.get("theta_o_deg").to_radians().cos(), 0.0));
         let wi = narrow(direction(row.get("theta_i_deg").to_radians().cos(), row.get("phi_deg").to_radians()));
         worst = worst.max(error(model.published(wo, wi), row.get("f_rho1"), 1e-6));
@@ -271,7 +271,7 @@ fn oren_nayar() {
 fn oren_nayar_never_gains() {
     let mut most = 0.0f64;
     for sigma in [0.0, 0.1, 0.2, 0.3, 0.5, 0.8, 2.0] {
-        let model = OrenNayar::prepare([sigma, 0.0, 0.0, 0.0]);
+        let model = OrenNayar::prepare(params([sigma]));
         for c in [1e-3, 0.01, 0.05, 0.1, 0.3, 0.7, 1.0] {
             let (by_f, estimate) = both(&model, c);
             assert!(by_f <= estimate + 2e-4, "{sigma} {c}: {by_f} {estimate}");

@@ -7,7 +7,7 @@ use velour::bsdf::microfacet::Microfacet;
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
 use velour::bsdf::velvet::Velvet;
-use velour::bsdf::{Eval, Scatter, View};
+use velour::bsdf::{Eval, Params, Scatter, Side, View, params};
 use velour::math::quadrature::gauss_legendre;
 use velour::measure::statistics::{Random, chi_square, sidak};
 
@@ -61,12 +61,12 @@ fn counts(model: &impl Scatter, wo: Vec3, seed: u64) -> Vec<f64> {
     out
 }
 
-fn passes<M: Scatter>(params: [f32; 4], name: &str) {
-    let model = M::prepare(params);
+fn passes<M: Scatter>(values: [f32; 4], name: &str) {
+    let model = M::prepare(params(values));
     for (k, c) in [0.1, 0.5, 0.95].into_iter().enumerate() {
         let wo = narrow(direction(c, 0.4 + k as f64));
         let p = chi_square(&counts(&model, wo, SEED + k as u64), &expectations(&model, wo));
-        assert!(p > sidak(LEVEL, TESTS), "{name} {params:?} at {c}: p = {p:e}");
+        assert!(p > sidak(LEVEL, TESTS), "{name} {values:?} at {c}: p = {p:e}");
     }
 }
 
@@ -101,9 +101,9 @@ struct Wrong<M>(M);
 
 impl<M: Scatter> Scatter for Wrong<M> {
     const PARAMS: usize = M::PARAMS;
-    const TRANSMITS: bool = M::TRANSMITS;
+    const SIDE: Side = M::SIDE;
 
-    fn prepare(params: [f32; 4]) -> Self {
+    fn prepare(params: Params) -> Self {
         Wrong(M::prepare(params))
     }
 
@@ -123,8 +123,8 @@ impl<M: Scatter> Scatter for Wrong<M> {
 
 #[test]
 fn a_density_five_percent_wrong_is_rejected() {
-    fn rejected<M: Scatter>(params: [f32; 4]) {
-        let model = Wrong(M::prepare(params));
+    fn rejected<M: Scatter>(values: [f32; 4]) {
+        let model = Wrong(M::prepare(params(values)));
         let wo = narrow(direction(0.5, 1.4));
         let p = chi_square(&counts(&model, wo, SEED), &expectations(&model, wo));
         assert!(p < sidak(LEVEL, TESTS), "p = {p:e}");
@@ -152,7 +152,7 @@ fn the_default_sheen_sampler_beats_the_uniform_one() {
     let cosines = [0.05, 0.25, 0.5, 0.75, 0.999];
     for (r, bar) in [(0.06, 0.40), (0.15, 0.25), (0.25, 0.20), (0.4, 0.15), (0.65, 0.12), (1.0, 0.10)] {
         let mean = |share: f32| {
-            let model = Sheen::<EXACT, true>::prepare([r, share, 0.0, 0.0]);
+            let model = Sheen::<EXACT, true>::prepare(params([r, share]));
             cosines.iter().map(|&c| relative_variance(&model, c)).sum::<f64>() / 5.0
         };
         let (proposal, uniform) = (mean(0.1), mean(1.0));

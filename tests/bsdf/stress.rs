@@ -2,13 +2,13 @@
 
 use crate::SEED;
 use glam::Vec3;
-use velour::bsdf::Scatter;
 use velour::bsdf::microfacet::Microfacet;
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::reference::{self, Model};
 use velour::bsdf::sheen::shadowing::{Exact, Published, soften};
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
 use velour::bsdf::velvet::Velvet;
+use velour::bsdf::{Scatter, Side, params};
 use velour::measure::statistics::Random;
 
 fn direction(random: &mut Random, grazing: bool) -> Vec3 {
@@ -44,7 +44,7 @@ fn worst_error<const S: u8, const SOFT: bool>(model: Model, count: u32) -> (f64,
     let (mut worst_f, mut worst_f_cos) = (0.0f64, 0.0f64);
     for k in 0..count {
         let (wo, wi, r) = case(&mut random, k);
-        let sheen = Sheen::<S, SOFT>::prepare([r, 0.1, 0.0, 0.0]);
+        let sheen = Sheen::<S, SOFT>::prepare(params([r, 0.1]));
         let (f, eval) = (sheen.f(wo, wi), sheen.eval(wo, wi));
         assert!(f.is_finite() && f >= 0.0 && eval.f_cos.is_finite() && eval.pdf.is_finite(), "{wo} {wi} {r}");
         assert!(sheen.albedo(wo.z).is_finite());
@@ -77,19 +77,19 @@ fn sheen_is_finite_and_right_everywhere() {
 
 #[test]
 fn every_model_is_finite_everywhere() {
-    fn check<M: Scatter>(params: [f32; 4], random: &mut Random, k: u32) {
+    fn check<M: Scatter>(values: [f32; 4], random: &mut Random, k: u32) {
         let (wo, mut wi, r) = case(random, k);
-        let model = M::prepare(params.map(|p| if p < 0.0 { r } else { p }));
-        if M::TRANSMITS {
+        let model = M::prepare(params(values.map(|p| if p < 0.0 { r } else { p })));
+        if M::SIDE == Side::Other {
             wi = -wi;
         }
         let sampled = model.sample(wo, Vec3::new(random.number(), random.number(), random.number()));
-        assert!(sampled.is_finite(), "{params:?} {wo}");
+        assert!(sampled.is_finite(), "{values:?} {wo}");
         for w in [wi, sampled, Vec3::ZERO, -wo, wo] {
             let eval = model.eval(wo, w);
             assert!(
                 eval.f_cos.is_finite() && eval.pdf.is_finite() && eval.f_cos >= 0.0 && eval.pdf >= 0.0,
-                "{params:?} {wo} {w} {eval:?}"
+                "{values:?} {wo} {w} {eval:?}"
             );
         }
     }
@@ -128,8 +128,8 @@ fn edge_inputs_give_what_they_should() {
     assert!((Published::new(0.25).lambda(1.000_000_1) - 1.0149e-8).abs() < 1e-11);
     assert!(Exact::new(4.0).lambda(0.0).is_finite() && soften(Exact::new(4.0).lambda(0.0), 0.0).is_finite());
     let below = Vec3::new(0.8, 0.0, -0.6);
-    assert_eq!(Sheen::<PUBLISHED, true>::prepare([0.25, 0.1, 0.0, 0.0]).f(Vec3::Z, below), 0.0);
-    let grazing = Sheen::<ASHIKHMIN, false>::prepare([0.25, 0.1, 0.0, 0.0]).eval(Vec3::X, Vec3::X);
+    assert_eq!(Sheen::<PUBLISHED, true>::prepare(params([0.25, 0.1])).f(Vec3::Z, below), 0.0);
+    let grazing = Sheen::<ASHIKHMIN, false>::prepare(params([0.25, 0.1])).eval(Vec3::X, Vec3::X);
     assert_eq!(grazing.f_cos, 0.0);
 }
 
@@ -141,16 +141,16 @@ fn unsoftened_models_are_reciprocal() {
         if wi.z <= 0.0 {
             continue;
         }
-        let sheen = Sheen::<EXACT, false>::prepare([r, 0.1, 0.0, 0.0]);
-        let rough = Microfacet::<false, false>::prepare([r.max(0.05), 0.2, 1.5, 0.0]);
-        let diffuse = OrenNayar::prepare([r, 0.0, 0.0, 0.0]);
+        let sheen = Sheen::<EXACT, false>::prepare(params([r, 0.1]));
+        let rough = Microfacet::<false, false>::prepare(params([r.max(0.05), 0.2, 1.5]));
+        let diffuse = OrenNayar::prepare(params([r]));
         let both =
             |a: f32, b: f32| assert!((a - b).abs() <= 2e-3 * a.abs().max(b.abs()) + 1e-6, "{a} {b} {wo} {wi} {r}");
         both(sheen.eval(wo, wi).f_cos * wo.z, sheen.eval(wi, wo).f_cos * wi.z);
         both(rough.eval(wo, wi).f_cos * wo.z, rough.eval(wi, wo).f_cos * wi.z);
         both(diffuse.eval(wo, wi).f_cos * wo.z, diffuse.eval(wi, wo).f_cos * wi.z);
     }
-    let soft = Sheen::<PUBLISHED, true>::prepare([0.15, 0.1, 0.0, 0.0]);
+    let soft = Sheen::<PUBLISHED, true>::prepare(params([0.15, 0.1]));
     let (a, b) = (
         crate::narrow(crate::direction(30f64.to_radians().cos(), 0.0)),
         crate::narrow(crate::direction(80f64.to_radians().cos(), 0.0)),

@@ -10,7 +10,7 @@
 pub mod distributions;
 
 use super::fresnel::{dielectric, refracted};
-use super::{Eval, Scatter, View, select};
+use super::{Eval, Params, Scatter, Side, View, select};
 use distributions::{Widths, beckmann_d, beckmann_lambda, ggx_d, ggx_lambda};
 use glam::Vec3;
 
@@ -78,11 +78,11 @@ impl<const BECKMANN: bool, const REFRACT: bool> Microfacet<BECKMANN, REFRACT> {
 
 impl<const BECKMANN: bool, const REFRACT: bool> Scatter for Microfacet<BECKMANN, REFRACT> {
     const PARAMS: usize = 3;
-    const TRANSMITS: bool = REFRACT;
+    const SIDE: Side = if REFRACT { Side::Other } else { Side::Same };
     const VIEW: usize = 3;
 
     #[inline(always)]
-    fn prepare([x, y, eta, _]: [f32; 4]) -> Self {
+    fn prepare([x, y, eta, ..]: Params) -> Self {
         Microfacet { widths: Widths { x: x.clamp(MIN_ALPHA, 1.0), y: y.clamp(MIN_ALPHA, 1.0) }, eta: eta.min(1e3) }
     }
 

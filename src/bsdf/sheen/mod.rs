@@ -19,7 +19,7 @@ pub mod reference;
 pub mod sampling;
 pub mod shadowing;
 
-use super::{Eval, Scatter, View, select};
+use super::{Eval, Params, Scatter, View, select};
 use albedo::AlbedoCurve;
 use glam::Vec3;
 use sampling::{Azimuth, Proposal};
@@ -93,11 +93,10 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
 
 impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
     const PARAMS: usize = 2;
-    const TRANSMITS: bool = false;
     const VIEW: usize = 5;
 
     #[inline(always)]
-    fn prepare([roughness, uniform_share, ..]: [f32; 4]) -> Self {
+    fn prepare([roughness, uniform_share, ..]: Params) -> Self {
         let r = charlie::clamp_roughness(roughness);
         let n = 1.0 / r;
         Sheen {

@@ -1,7 +1,10 @@
-//! The closure table: every closure is declared here once, and all other rooms read it.
+//! The closure table: every closure is declared in this folder once, and all other rooms read it.
 //!
 //! The checker takes signatures from it, the tree printer names and argument order, the flattener the model, and
 //! `velour info` the documentation. A host adds its own closures to a copy of [`ClosureTable::standard`].
+
+mod classic;
+mod cloth;
 
 /// The type of a closure parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +36,37 @@ pub struct ParamSpec {
     pub doc: &'static str,
     /// The strings it may be, where only some mean something; empty for any value.
     pub choices: &'static [&'static str],
+    /// The values that `velour verify` tries (of every component of a color), the usual one first; empty when it decides
+    /// nothing that could be verified, and for normals and directions.
+    pub sweep: &'static [f32],
+}
+
+impl ParamSpec {
+    /// The same parameter with the values that `velour verify` tries.
+    const fn tried(mut self, sweep: &'static [f32]) -> Self {
+        self.sweep = sweep;
+        self
+    }
+}
+
+/// What a scattering model may promise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Claim {
+    /// It never reflects more than arrives: the directional albedo is at most 1.
+    Energy,
+    /// f of two directions on one side is the same when they are exchanged.
+    Reciprocity,
+}
+
+/// A promise that a closure does not make: always, or where a parameter has a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Waiver {
+    /// The promise.
+    pub claim: Claim,
+    /// The parameter or keyword with the value (a number or a word) that spoils it; none: it is never promised.
+    pub only: Option<(&'static str, &'static str)>,
+    /// Why, with the figure.
+    pub why: &'static str,
 }
 
 /// Which built-in scattering model a closure stands for.
@@ -85,6 +119,24 @@ pub struct ClosureSpec {
     pub keywords: Vec<ParamSpec>,
     /// One line of documentation.
     pub doc: &'static str,
+    /// The promises it does not make.
+    pub waivers: &'static [Waiver],
+    /// True when its albedo is 1 for white parameters: it loses nothing.
+    pub lossless: bool,
+}
+
+impl ClosureSpec {
+    /// The same closure without some promises.
+    fn without(mut self, waivers: &'static [Waiver]) -> Self {
+        self.waivers = waivers;
+        self
+    }
+
+    /// The same closure, promising to lose nothing.
+    fn lossless(mut self) -> Self {
+        self.lossless = true;
+        self
+    }
 }
 
 /// All closures a compilation knows.
@@ -123,30 +175,16 @@ impl ClosureTable {
 }
 
 const fn param(name: &'static str, kind: ParamKind, doc: &'static str) -> ParamSpec {
-    ParamSpec { name, kind, doc, choices: &[] }
+    ParamSpec { name, kind, doc, choices: &[], sweep: &[] }
 }
 
 const fn choice(name: &'static str, choices: &'static [&'static str], doc: &'static str) -> ParamSpec {
-    ParamSpec { name, kind: ParamKind::String, doc, choices }
+    ParamSpec { name, kind: ParamKind::String, doc, choices, sweep: &[] }
 }
 
 const NORMAL: ParamSpec = param("N", ParamKind::Normal, "shading normal, unit length");
 const TANGENT: ParamSpec = param("U", ParamKind::Vector, "direction of xalpha; zero for any");
 const ETA: ParamSpec = param("eta", ParamKind::Float, "index of refraction inside over outside, > 0");
-const SHEEN_ROUGHNESS: ParamSpec = param("roughness", ParamKind::Float, "Charlie roughness r, clamped to 0.01..1");
-const LAYERING: ParamSpec = choice(
-    "layering",
-    &["min", "view", "kelemen"],
-    "how the base is scaled: \"min\" (default), \"view\" or \"kelemen\"",
-);
-const SHADOWING: ParamSpec = choice(
-    "shadowing",
-    &["exact", "published", "ashikhmin"],
-    "shadowing term: \"exact\" (default), \"published\" (fit of the paper) or \"ashikhmin\" (real-time visibility)",
-);
-const SOFTENING: ParamSpec =
-    param("softening", ParamKind::Int, "1 (default) softens the terminator by eq. 4, 0 does not");
-const MODE: ParamSpec = param("mode", ParamKind::Int, "0: this model (the default); other values are not run");
 
 /// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
 pub const NOT_YET: &[&str] = &[
@@ -179,103 +217,11 @@ fn spec(
 ) -> ClosureSpec {
     // Every closure takes a label, after the keywords that its model reads.
     let keywords = keywords.iter().cloned().chain([LABEL]).collect();
-    ClosureSpec { name, model, params: params.to_vec(), keywords, doc }
+    ClosureSpec { name, model, params: params.to_vec(), keywords, doc, waivers: &[], lossless: false }
 }
 
 fn standard_specs() -> Vec<ClosureSpec> {
-    let mut specs = plain_specs();
-    specs.extend(cloth_specs());
+    let mut specs = classic::specs();
+    specs.extend(cloth::specs());
     specs
-}
-
-/// The closures that OSL has had from the start.
-fn plain_specs() -> Vec<ClosureSpec> {
-    use ParamKind::*;
-    let microfacet = [
-        choice(
-            "distribution",
-            &["ggx", "beckmann", "default", "sharp", ""],
-            "\"ggx\", \"beckmann\" or \"default\" (ggx)",
-        ),
-        NORMAL,
-        TANGENT,
-        param("xalpha", Float, "GGX width along U, 0..1; 0 is a mirror"),
-        param("yalpha", Float, "GGX width across U, 0..1"),
-        ETA,
-        param("refract", Int, "0 reflects, 1 refracts, 2 does both"),
-    ];
-    vec![
-        spec(
-            "emission",
-            Model::Emission,
-            &[],
-            &[],
-            "emits its weight as radiance, both sides of the normal's hemisphere",
-        ),
-        spec("background", Model::Background, &[], &[], "radiance of the sky"),
-        spec("diffuse", Model::Diffuse, &[NORMAL], &[], "Lambert's reflection"),
-        spec(
-            "oren_nayar",
-            Model::OrenNayar,
-            &[NORMAL, param("sigma", Float, "standard deviation of the facet slope, radians, >= 0")],
-            &[],
-            "rough diffuse reflection of Oren and Nayar 1994",
-        ),
-        spec(
-            "ashikhmin_velvet",
-            Model::Velvet,
-            &[NORMAL, param("sigma", Float, "width of the inverted Gaussian, clamped to 0.06..1")],
-            &[],
-            "velvet of Ashikhmin and Premoze 2007, to compare sheen with",
-        ),
-        spec("translucent", Model::Translucent, &[NORMAL], &[], "Lambert's transmission"),
-        spec("transparent", Model::Transparent, &[], &[], "lets light pass straight through"),
-        spec(
-            "reflection",
-            Model::Reflection,
-            &[NORMAL, ETA],
-            &[],
-            "mirror with dielectric Fresnel; eta 0 reflects all",
-        ),
-        spec("refraction", Model::Refraction, &[NORMAL, ETA], &[], "smooth refraction with dielectric Fresnel"),
-        spec("microfacet", Model::Microfacet, &microfacet, &[], "rough dielectric reflection and refraction"),
-        spec("holdout", Model::Holdout, &[], &[], "a hole in the alpha channel"),
-        spec(
-            "debug",
-            Model::Debug,
-            &[param("tag", String, "name of the output")],
-            &[],
-            "a tagged value; scatters nothing",
-        ),
-    ]
-}
-
-/// Sheen, and the layering it needs.
-fn cloth_specs() -> Vec<ClosureSpec> {
-    use ParamKind::*;
-    let sheen_tint =
-        param("tint", Color, "color of the sheen; its largest component scales the albedo taken from the base");
-    vec![
-        spec(
-            "sheen",
-            Model::Sheen,
-            &[param("base", Closure, "what lies under the sheen"), NORMAL, sheen_tint, SHEEN_ROUGHNESS],
-            &[SHADOWING, SOFTENING, LAYERING],
-            "cloth sheen laid over any closure (Estevez and Kulla 2017)",
-        ),
-        spec(
-            "sheen_bsdf",
-            Model::SheenBsdf,
-            &[NORMAL, param("albedo", Color, "color of the sheen"), SHEEN_ROUGHNESS],
-            &[SHADOWING, SOFTENING, MODE],
-            "the sheen lobe alone, to be laid over a base by layer()",
-        ),
-        spec(
-            "layer",
-            Model::Layer,
-            &[param("top", Closure, "the layer on top"), param("base", Closure, "what lies under it")],
-            &[LAYERING],
-            "lays one closure over another by albedo scaling",
-        ),
-    ]
 }

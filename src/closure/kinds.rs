@@ -1,0 +1,94 @@
+//! The kinds of lobes, and the one place that maps each to its model.
+
+use super::sampling::event;
+use crate::bsdf::sheen::shadowing::Shadowing;
+
+/// Runs an expression with the type `$M` of a surface's model and a source `$source` of its constants.
+/// Lobes of one direction have no lane loop and run nothing.
+macro_rules! with_source {
+    ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
+        use $crate::bsdf::sheen::shadowing::Shadowing;
+        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
+        use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar, velvet};
+        use $crate::closure::kinds::Kind;
+        macro_rules! run {
+            ($model:ty) => {{
+                #[allow(unused)]
+                type $M = $model;
+                match $surface.params {
+                    $crate::closure::surfaces::Values::Uniform(params) => {
+                        let $source = $crate::closure::surfaces::same::<$M>(params);
+                        $body
+                    }
+                    $crate::closure::surfaces::Values::Columns(offsets) => {
+                        let $source = $crate::closure::surfaces::each(&$surfaces.data, offsets, $surfaces.lanes);
+                        $body
+                    }
+                }
+            }};
+        }
+        match $surface.kind {
+            Kind::Lambert => run!(lambert::Lambert),
+            Kind::Translucent => run!(lambert::Translucent),
+            Kind::OrenNayar => run!(oren_nayar::OrenNayar),
+            Kind::Velvet => run!(velvet::Velvet),
+            Kind::Sheen(Shadowing::Exact, true) => run!(Sheen<EXACT, true>),
+            Kind::Sheen(Shadowing::Exact, false) => run!(Sheen<EXACT, false>),
+            Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
+            Kind::Sheen(Shadowing::Published, false) => run!(Sheen<PUBLISHED, false>),
+            Kind::Sheen(Shadowing::Ashikhmin, _) => run!(Sheen<ASHIKHMIN, false>),
+            Kind::Microfacet { beckmann: false, refract: false } => run!(Microfacet<false, false>),
+            Kind::Microfacet { beckmann: false, refract: true } => run!(Microfacet<false, true>),
+            Kind::Microfacet { beckmann: true, refract: false } => run!(Microfacet<true, false>),
+            Kind::Microfacet { beckmann: true, refract: true } => run!(Microfacet<true, true>),
+            Kind::Reflection | Kind::Refraction | Kind::Transparent => {}
+        }
+    }};
+}
+pub(super) use with_source;
+
+/// The scattering models a lobe can have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// Lambert's reflection.
+    Lambert,
+    /// Lambert's transmission.
+    Translucent,
+    /// Rough diffuse reflection.
+    OrenNayar,
+    /// Ashikhmin's velvet.
+    Velvet,
+    /// Sheen with its shadowing term, softened or not.
+    Sheen(Shadowing, bool),
+    /// Rough boundary.
+    Microfacet {
+        /// Beckmann's distribution, otherwise GGX.
+        beckmann: bool,
+        /// The refracting half, otherwise the reflecting one.
+        refract: bool,
+    },
+    /// Smooth mirror.
+    Reflection,
+    /// Smooth refraction.
+    Refraction,
+    /// Straight through.
+    Transparent,
+}
+
+impl Kind {
+    /// True for lobes of one direction, which have no density.
+    pub fn is_delta(self) -> bool {
+        matches!(self, Kind::Reflection | Kind::Refraction | Kind::Transparent)
+    }
+
+    /// What sampling it counts as.
+    pub fn event(self) -> u8 {
+        match self {
+            Kind::Reflection => event::DELTA_REFLECT,
+            Kind::Refraction => event::DELTA_REFRACT,
+            Kind::Transparent => event::STRAIGHT,
+            Kind::Microfacet { .. } => event::GLOSSY,
+            _ => event::DIFFUSE,
+        }
+    }
+}

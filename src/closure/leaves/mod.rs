@@ -1,0 +1,167 @@
+//! Leaves: from a closure of the tree to surfaces, by its model; the only place that knows what each closure stands for.
+//!
+//! What may differ between lanes although the lane loops need it fixed (distribution, refract, keyword strings, a width so small
+//! that the boundary is smooth) splits a leaf into parts, each with a gate that is 1 in its lanes.
+
+mod cloth;
+mod microfacet;
+
+use super::kinds::Kind;
+use super::settings::{Layering, Settings};
+use super::surfaces::{NONE, Request, Surfaces};
+use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
+use crate::lang::closures::{ClosureSpec, Model};
+use crate::lang::symbols::Symbol;
+use crate::math::columns::Column3;
+
+/// A surface of a leaf, with the column of its coverage t when it lies on top of something.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// The surface.
+    pub surface: u32,
+    /// Offset of its t.
+    pub t: u32,
+}
+
+/// How a leaf covers what it nests: one entry a variant.
+#[derive(Clone, Copy, Debug)]
+pub struct Cover {
+    /// The covering surface; none for `layer`, whose top is a tree.
+    pub surface: Option<u32>,
+    /// Offset of the coverage t.
+    pub t: u32,
+    /// The rule of scaling.
+    pub rule: Layering,
+    /// Offset of the lanes it applies to, or [`NONE`].
+    pub gate: u32,
+}
+
+/// A leaf made ready.
+#[derive(Clone, Debug, Default)]
+pub struct Leaf {
+    /// Its surfaces.
+    pub parts: Vec<Part>,
+    /// How it covers its base.
+    pub covers: Vec<Cover>,
+    /// A color that its weight is multiplied with.
+    pub tint: Option<[Floats; 3]>,
+    /// The tree on top, of `layer`.
+    pub top: Option<NodeId>,
+    /// What lies under it.
+    pub base: Option<NodeId>,
+    /// True for light sources.
+    pub emits: bool,
+    /// True for holes.
+    pub hole: bool,
+}
+
+/// What leaves are made from beside the tree's node.
+pub struct LeafContext<'a> {
+    /// The tree.
+    pub tree: &'a Tree,
+    /// Choices of the render.
+    pub settings: Settings,
+    /// The viewer.
+    pub wo: &'a Column3,
+    /// Geometric normals.
+    pub ng: &'a Column3,
+}
+
+/// The parameters of one leaf, by position, with defaults for what is missing.
+struct Arguments<'a> {
+    tree: &'a Tree,
+    params: &'a [Param],
+    keywords: &'a [(u32, Param)],
+    spec: &'a ClosureSpec,
+}
+
+impl Arguments<'_> {
+    fn float(&self, index: usize) -> Floats {
+        if let Some(Param::Float(value)) = self.params.get(index) { *value } else { Floats::Uniform(0.0) }
+    }
+
+    fn triple(&self, index: usize) -> [Floats; 3] {
+        if let Some(Param::Triple(value)) = self.params.get(index) { *value } else { [Floats::Uniform(0.0); 3] }
+    }
+
+    fn ints(&self, index: usize) -> Ints {
+        if let Some(Param::Int(value) | Param::String(value)) = self.params.get(index) {
+            *value
+        } else {
+            Ints::Uniform(0)
+        }
+    }
+
+    fn closure(&self, index: usize) -> Option<NodeId> {
+        if let Some(Param::Closure(value)) = self.params.get(index) { *value } else { None }
+    }
+
+    fn keyword(&self, name: &str) -> Option<Ints> {
+        let index = self.spec.keywords.iter().position(|k| k.name == name)? as u32;
+        self.keywords.iter().rev().find(|(k, _)| *k == index).and_then(|(_, value)| match value {
+            Param::Int(value) | Param::String(value) => Some(*value),
+            _ => None,
+        })
+    }
+
+    fn text(&self, column: Ints, lane: usize) -> &'static str {
+        Symbol(self.tree.int(column, lane)).text()
+    }
+}
+
+/// The codes that occur in a batch, each with the gate of its lanes; code 0 means no surface.
+fn variants(
+    surfaces: &mut Surfaces,
+    columns: &[Option<Ints>],
+    code: impl Fn(usize) -> u32,
+    floats_vary: bool,
+) -> Vec<(u32, u32)> {
+    let uniform = !floats_vary && columns.iter().all(|c| !matches!(c, Some(Ints::Varying(_))));
+    let lanes = if uniform { surfaces.lanes.min(1) } else { surfaces.lanes };
+    let mut seen = (0..lanes).fold(0u32, |seen, lane| seen | 1 << code(lane));
+    if seen.count_ones() == 1 {
+        let only = seen.trailing_zeros();
+        return if only == 0 { Vec::new() } else { vec![(only, NONE)] };
+    }
+    seen &= !1;
+    let codes = (1..32).filter(|c| seen >> c & 1 == 1);
+    codes.map(|c| (c, surfaces.push_column(|lane| if code(lane) == c { 1.0 } else { 0.0 }))).collect()
+}
+
+/// Makes a leaf's surfaces.
+pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &ClosureSpec, node: &Node) -> Leaf {
+    let Node::Leaf { first_param, param_count, first_keyword, keyword_count, .. } = *node else {
+        return Leaf::default();
+    };
+    let tree = context.tree;
+    let arguments = Arguments {
+        tree,
+        params: &tree.params[first_param as usize..(first_param + param_count) as usize],
+        keywords: &tree.keywords[first_keyword as usize..(first_keyword + keyword_count) as usize],
+        spec,
+    };
+    let mut single = |kind, params: &[Floats], eta| {
+        let frame = match kind {
+            Kind::Transparent => NONE,
+            _ => surfaces.frame(tree, arguments.triple(0), None, context.wo, context.ng),
+        };
+        let request = Request { kind, closure: spec.name, frame, params, eta, gate: NONE };
+        Leaf { parts: vec![Part { surface: surfaces.push(tree, request), t: 0 }], ..Leaf::default() }
+    };
+    match spec.model {
+        Model::Emission | Model::Background => Leaf { emits: true, ..Leaf::default() },
+        Model::Holdout => Leaf { hole: true, ..Leaf::default() },
+        Model::Debug | Model::Host(_) => Leaf::default(),
+        Model::Diffuse => single(Kind::Lambert, &[], None),
+        Model::Translucent => single(Kind::Translucent, &[], None),
+        Model::Transparent => single(Kind::Transparent, &[], None),
+        Model::OrenNayar => single(Kind::OrenNayar, &[arguments.float(1)], None),
+        Model::Velvet => single(Kind::Velvet, &[arguments.float(1)], None),
+        Model::Reflection => single(Kind::Reflection, &[arguments.float(1)], Some(0)),
+        Model::Refraction => single(Kind::Refraction, &[arguments.float(1)], Some(0)),
+        Model::Microfacet => microfacet::leaf(surfaces, context, &arguments),
+        Model::Sheen => cloth::sheen(surfaces, context, &arguments, 1),
+        Model::SheenBsdf => cloth::sheen(surfaces, context, &arguments, 0),
+        Model::Layer => cloth::layer(surfaces, context, &arguments),
+    }
+}
