@@ -81,13 +81,15 @@ impl<'a> Triples<'a> {
         Triples { x: &data[..lanes], y: &data[lanes..2 * lanes], z: &data[2 * lanes..3 * lanes] }
     }
 
+    /// The same columns, cut to the lanes of a loop.
     #[inline(always)]
-    fn narrow(self, lanes: usize) -> Self {
+    pub fn narrow(self, lanes: usize) -> Self {
         Triples { x: &self.x[..lanes], y: &self.y[..lanes], z: &self.z[..lanes] }
     }
 
+    /// The triple of a lane.
     #[inline(always)]
-    fn at(&self, lane: usize) -> Vec3 {
+    pub fn at(&self, lane: usize) -> Vec3 {
         Vec3::new(self.x[lane], self.y[lane], self.z[lane])
     }
 }

@@ -8,9 +8,9 @@ use super::layering::{Layer, Layers, Side, Step, Top, surface_albedo};
 use super::leaves::{Leaf, LeafContext, prepare_leaf};
 use super::lobes::{Dropped, Lobe, Lobes};
 use super::settings::Layering;
-use super::surfaces::{NONE, Surfaces};
+use super::surfaces::{NONE, Seen, Surfaces};
 use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
-use crate::lang::closures::ClosureTable;
+use crate::lang::closures::{ClosureSpec, ClosureTable};
 use crate::math::columns::Column3;
 
 /// More lobes or pending weights than this are dropped and reported: a shared base under many different layers could
@@ -127,6 +127,7 @@ pub(super) fn flatten(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, wo: 
     lobes.ones.resize(n, 1.0);
     lobes.surfaces.clear(n);
     lobes.layers.clear();
+    lobes.media.clear();
     lobes.lobes.clear();
     lobes.weights.clear();
     lobes.dropped.clear();
@@ -142,55 +143,25 @@ pub(super) fn flatten(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, wo: 
         }
         build_steps(&mut lobes.sweep, &mut lobes.layers, &mut lobes.surfaces, table, tree, root);
     }
-    lobes.layers.prepare(&lobes.surfaces, &lobes.ones);
+    lobes.layers.prepare(&lobes.surfaces, &lobes.media, &lobes.ones);
     emit(lobes);
     pick(lobes);
 }
 
 fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
     let n = tree.lanes;
-    let in_top = lobes.sweep.in_top[index as usize];
-    let below = |lobes: &mut Lobes, child: Option<NodeId>| {
-        if let (true, Some(child)) = (in_top, child) {
-            lobes.sweep.in_top[child.0 as usize] = true;
-        }
-    };
+    if lobes.sweep.in_top[index as usize] {
+        mark_children(&mut lobes.sweep.in_top, tree, index);
+    }
+    // A leaf is made ready once for every medium it lies in.
+    let mut ready: Vec<(u32, Leaf)> = Vec::new();
     let mut at = lobes.sweep.heads[index as usize];
-    let leaf = match tree.nodes[index as usize] {
-        Node::Leaf { closure, .. } => {
-            let context = LeafContext { tree, settings: lobes.settings, wo: &lobes.wo, ng: &lobes.ng };
-            let spec = table.get(closure);
-            let leaf = prepare_leaf(&mut lobes.surfaces, &context, spec, &tree.nodes[index as usize]);
-            let first = lobes.layers.leaves.len() as u32;
-            lobes.layers.leaves.extend(leaf.parts.iter().map(|part| (part.surface, part.t)));
-            lobes.sweep.leaves_of[index as usize] = (first, lobes.layers.leaves.len() as u32);
-            below(lobes, leaf.base);
-            below(lobes, leaf.top);
-            if let Some(top) = leaf.top {
-                lobes.sweep.in_top[top.0 as usize] = true;
-            }
-            Some((leaf, spec.name))
-        }
-        Node::Scale { child, .. } => {
-            below(lobes, Some(child));
-            None
-        }
-        Node::Add(a, b) => {
-            below(lobes, Some(a));
-            below(lobes, Some(b));
-            None
-        }
-        Node::Select { then, otherwise, .. } => {
-            below(lobes, then);
-            below(lobes, otherwise);
-            None
-        }
-    };
     while at != NONE {
         let entry = lobes.sweep.entries[at as usize];
         at = entry.next;
         let Entry { layer, weight, .. } = entry;
         let sweep = &mut lobes.sweep;
+        let mut name = "too many lobes";
         let fits = match tree.nodes[index as usize] {
             Node::Scale { weight: factor, child } => {
                 let weight = sweep.times(tree, weight, factor);
@@ -206,15 +177,62 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
                 yes.is_none_or(|w| sweep.send(n, then, layer, w))
                     && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
             }
-            Node::Leaf { .. } => {
-                leaf.as_ref().is_none_or(|(leaf, name)| place(lobes, tree, leaf, (name, NodeId(index)), layer, weight))
+            Node::Leaf { closure, .. } => {
+                name = table.get(closure).name;
+                let medium = lobes.layers.medium(layer);
+                if !ready.iter().any(|(m, _)| *m == medium) {
+                    ready.push((medium, make_ready(lobes, table.get(closure), tree, index, medium)));
+                }
+                let leaf = ready.iter().find(|(m, _)| *m == medium);
+                leaf.is_none_or(|(_, leaf)| place(lobes, tree, leaf, (name, NodeId(index)), layer, weight))
             }
         };
         if !fits {
-            let name = leaf.as_ref().map_or("too many lobes", |(_, name)| name);
             drop_lane(&mut lobes.dropped, (name, NodeId(index)), 0);
         }
     }
+}
+
+/// Marks what a node of a layer's top consists of.
+fn mark_children(in_top: &mut [bool], tree: &Tree, index: u32) {
+    let mut mark = |child: Option<NodeId>| {
+        if let Some(NodeId(child)) = child {
+            in_top[child as usize] = true;
+        }
+    };
+    match tree.nodes[index as usize] {
+        Node::Leaf { first_param, param_count, .. } => {
+            for param in &tree.params[first_param as usize..(first_param + param_count) as usize] {
+                if let Param::Closure(child) = param {
+                    mark(*child);
+                }
+            }
+        }
+        Node::Scale { child, .. } => mark(Some(child)),
+        Node::Add(a, b) => [a, b].into_iter().for_each(|child| mark(Some(child))),
+        Node::Select { then, otherwise, .. } => [then, otherwise].into_iter().for_each(mark),
+    }
+}
+
+/// Makes a leaf's surfaces, and the medium under it when it is a coat.
+fn make_ready(lobes: &mut Lobes, spec: &ClosureSpec, tree: &Tree, index: u32, medium: u32) -> Leaf {
+    let wo = lobes.media.get(medium).map_or(&lobes.wo, |m| &m.wo);
+    let seen = Seen { wo, ng: &lobes.ng, medium };
+    let context = LeafContext { tree, settings: lobes.settings, seen };
+    let mut leaf = prepare_leaf(&mut lobes.surfaces, &context, spec, &tree.nodes[index as usize]);
+    if let Some(coat) = leaf.coat.take() {
+        leaf.inner = Some(lobes.media.push(medium, coat, lobes.surfaces.frames(), &lobes.wo));
+    }
+    if let Some(top) = leaf.top {
+        lobes.sweep.in_top[top.0 as usize] = true;
+    }
+    // A top that lies in several media has the albedo it has in the first.
+    if lobes.sweep.leaves_of[index as usize] == (0, 0) {
+        let first = lobes.layers.leaves.len() as u32;
+        lobes.layers.leaves.extend(leaf.parts.iter().map(|part| (part.surface, part.t)));
+        lobes.sweep.leaves_of[index as usize] = (first, lobes.layers.leaves.len() as u32);
+    }
+    leaf
 }
 
 /// Places a leaf under a layer: adds its lobes, and sends the weight on to what it nests.
@@ -239,11 +257,12 @@ fn place(
         return fits;
     }
     for cover in leaf.covers.iter() {
-        let top = match (cover.surface, leaf.top) {
-            (Some(surface), _) => Top::Surface(surface),
+        let top = match (cover.surface, leaf.top, leaf.inner) {
+            (Some(surface), ..) => Top::Surface(surface),
             // Holds the node until the steps are built.
-            (None, Some(NodeId(node))) => Top::Tree(node),
-            (None, None) => {
+            (None, Some(NodeId(node)), _) => Top::Tree(node),
+            (None, None, Some(_)) => Top::Boundary,
+            (None, None, None) => {
                 fits &= lobes.sweep.send(n, leaf.base, layer, weight);
                 continue;
             }
@@ -252,7 +271,8 @@ fn place(
             return false;
         }
         let depth = lobes.layers.depth(layer) + 1;
-        lobes.layers.list.push(Layer { parent: layer, depth, rule: cover.rule, top, t: cover.t });
+        let medium = leaf.inner.unwrap_or(lobes.layers.medium(layer));
+        lobes.layers.list.push(Layer { parent: layer, depth, rule: cover.rule, top, medium, t: cover.t });
         let inner = lobes.layers.list.len() as u32 - 1;
         let surfaces = &lobes.surfaces;
         let weight = if cover.gate == NONE {
@@ -367,7 +387,7 @@ fn build_steps(
                 let (first, last) = sweep.leaves_of[index];
                 match table.get(closure).model {
                     crate::lang::closures::Model::Layer => Step::Over(nested(0), nested(1)),
-                    crate::lang::closures::Model::Sheen => {
+                    crate::lang::closures::Model::Sheen | crate::lang::closures::Model::Coat => {
                         let base = nested(0);
                         layers.steps.push(Step::Leaves(first, last));
                         Step::Over(layers.steps.len() as u32 - 1, base)
@@ -397,7 +417,8 @@ fn emit(lobes: &mut Lobes) {
     for &(weight, layer, hole, node) in &lobes.sweep.emitters {
         for lane in 0..n {
             let through = if layer == NONE { 1.0 } else { lobes.layers.through_of(layer)[lane] };
-            let [x, y, z] = std::array::from_fn(|c| lobes.sweep.get(weight, c, lane, n) * through);
+            let tint = lobes.media.get(lobes.layers.medium(layer)).map_or([1.0; 3], |m| m.viewer_tint(lane).to_array());
+            let [x, y, z] = std::array::from_fn(|c| lobes.sweep.get(weight, c, lane, n) * through * tint[c]);
             if !(x.is_finite() && y.is_finite() && z.is_finite()) {
                 drop_lane(&mut lobes.dropped, (if hole { "holdout" } else { "emission" }, node), lane);
             } else if hole {
@@ -428,6 +449,10 @@ fn pick(lobes: &mut Lobes) {
         let (x, rest) = weight.split_at(n);
         let (y, z) = rest.split_at(n);
         let (through, total) = (&through[..n], &mut total[..n]);
+        let medium = lobes.media.get(lobes.layers.medium(lobe.layer)).filter(|medium| medium.colored);
+        for i in (0..n).filter(|_| medium.is_some()) {
+            out[i] *= medium.map_or(1.0, |medium| medium.viewer_tint(i).element_sum() / 3.0);
+        }
         for i in 0..n {
             let luminance = 0.2126 * x[i].abs() + 0.7152 * y[i].abs() + 0.0722 * z[i].abs();
             // An albedo is an estimate: a lobe that may scatter is never excluded for it.

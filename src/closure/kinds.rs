@@ -81,6 +81,11 @@ impl Kind {
         matches!(self, Kind::Reflection | Kind::Refraction | Kind::Transparent)
     }
 
+    /// True for lobes that scatter light about evenly, whatever the directions.
+    pub fn is_diffuse(self) -> bool {
+        matches!(self, Kind::Lambert | Kind::Translucent | Kind::OrenNayar)
+    }
+
     /// What sampling it counts as.
     pub fn event(self) -> u8 {
         match self {

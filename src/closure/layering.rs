@@ -8,6 +8,7 @@
 use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes};
 use super::kinds::Kind;
 use super::kinds::with_source;
+use super::media::Media;
 use super::settings::Layering;
 use super::surfaces::{NONE, Surface, Surfaces};
 use crate::bsdf::GAUSS;
@@ -31,6 +32,8 @@ pub enum Top {
     Surface(u32),
     /// A tree: index of its operation.
     Tree(u32),
+    /// The boundary of the medium that the base lies in.
+    Boundary,
 }
 
 /// One step of the albedo of a tree; operands are earlier steps.
@@ -61,6 +64,8 @@ pub struct Layer {
     pub rule: Layering,
     /// What it consists of.
     pub top: Top,
+    /// The medium that its base lies in, or [`NONE`].
+    pub medium: u32,
     /// Offset in the surfaces' data of the column t.
     pub t: u32,
 }
@@ -106,8 +111,13 @@ impl Layers {
         self.list.get(layer as usize).map_or(0, |l| l.depth)
     }
 
+    /// The medium that lobes under a layer lie in, or [`NONE`].
+    pub fn medium(&self, layer: u32) -> u32 {
+        self.list.get(layer as usize).map_or(NONE, |l| l.medium)
+    }
+
     /// Computes what depends on the viewer alone.
-    pub fn prepare(&mut self, surfaces: &Surfaces, ones: &[f32]) {
+    pub fn prepare(&mut self, surfaces: &Surfaces, media: &Media, ones: &[f32]) {
         let n = surfaces.lanes;
         for store in [&mut self.alpha_o, &mut self.through, &mut self.inverse_mean, &mut self.scales] {
             store.resize(n * self.list.len(), 1.0);
@@ -116,11 +126,16 @@ impl Layers {
         self.run_steps(surfaces, Side::View);
         for index in 0..self.list.len() {
             let layer = self.list[index];
-            top_albedo(&layer, surfaces, Side::View, &self.values, &mut self.scratch);
-            let t = surfaces.column(layer.t);
             let alpha = &mut self.alpha_o[index * n..(index + 1) * n];
-            for i in 0..n {
-                alpha[i] = (1.0 - t[i] * self.scratch[i]).clamp(0.0, 1.0);
+            match (layer.top, media.get(layer.medium)) {
+                (Top::Boundary, Some(medium)) => alpha.copy_from_slice(&medium.pass_o),
+                _ => {
+                    top_albedo(&layer, surfaces, Side::View, &self.values, &mut self.scratch);
+                    let t = surfaces.column(layer.t);
+                    for i in 0..n {
+                        alpha[i] = (1.0 - t[i] * self.scratch[i]).clamp(0.0, 1.0);
+                    }
+                }
             }
             let (before, here) = self.through.split_at_mut(index * n);
             let parent = column_or(before, layer.parent, ones);
@@ -176,13 +191,21 @@ impl Layers {
         }
     }
 
-    /// Computes the scale of every layer for the light directions in the frames.
-    pub fn scale(&mut self, surfaces: &Surfaces, ones: &[f32]) {
+    /// Computes the scale of every layer for the light directions in the frames and media.
+    pub fn scale(&mut self, surfaces: &Surfaces, media: &Media, ones: &[f32]) {
         let n = surfaces.lanes;
         if !self.steps.is_empty() {
             self.run_steps(surfaces, Side::Light);
         }
         for (index, layer) in self.list.iter().enumerate() {
+            if let (Top::Boundary, Some(medium)) = (layer.top, media.get(layer.medium)) {
+                let (before, here) = self.scales.split_at_mut(index * n);
+                let parent = column_or(before, layer.parent, ones);
+                for i in 0..n {
+                    here[i] = parent[i] * medium.pass_o[i] * medium.pass_i[i];
+                }
+                continue;
+            }
             if layer.rule != Layering::View {
                 top_albedo(layer, surfaces, Side::Light, &self.values, &mut self.scratch);
             }
@@ -261,6 +284,7 @@ fn top_albedo(layer: &Layer, surfaces: &Surfaces, side: Side, values: &[f32], ou
     let n = surfaces.lanes;
     match layer.top {
         Top::Surface(surface) => surface_albedo(surfaces, &surfaces.list[surface as usize], side, out),
+        Top::Boundary => out.fill(0.0),
         Top::Tree(step) => {
             for (o, v) in out.iter_mut().zip(&values[step as usize * n..(step as usize + 1) * n]) {
                 *o = v.clamp(0.0, 1.0);

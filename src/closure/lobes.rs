@@ -4,6 +4,7 @@ use super::batch::{LobeColumns, Triples, evaluate_lanes, side_lanes};
 use super::flatten::Sweep;
 use super::kinds::with_source;
 use super::layering::Layers;
+use super::media::Media;
 use super::sampling::SampleScratch;
 use super::settings::Settings;
 use super::surfaces::{NONE, Surfaces};
@@ -64,6 +65,9 @@ pub struct Lobes {
     pub(super) lanes: usize,
     pub(super) surfaces: Surfaces,
     pub(super) layers: Layers,
+    pub(super) media: Media,
+    /// Weight, scale and probability of a lobe in a medium, five columns.
+    pub(super) within: Vec<f32>,
     pub(super) lobes: Vec<Lobe>,
     /// Three columns a lobe.
     pub(super) weights: Vec<f32>,
@@ -90,6 +94,8 @@ impl Lobes {
             lanes: 0,
             surfaces: Surfaces::default(),
             layers: Layers::default(),
+            media: Media::default(),
+            within: Vec::new(),
             lobes: Vec::new(),
             weights: Vec::new(),
             picks: Vec::new(),
@@ -152,15 +158,16 @@ impl Lobes {
         }
         self.side.resize(n, 0.0);
         side_lanes(Triples::of(&self.ng), Triples::of(&self.wo), Triples::of(wi), &mut self.side);
-        self.surfaces.localise(wi);
-        self.layers.scale(&self.surfaces, &self.ones);
+        self.media.light(self.surfaces.frames(), wi);
+        self.surfaces.localise(&self.media, wi);
+        self.layers.scale(&self.surfaces, &self.media, &self.ones);
         for (index, lobe) in self.lobes.iter().enumerate() {
             let surface = &self.surfaces.list[lobe.surface as usize];
             if surface.kind.is_delta() {
                 continue;
             }
             let frame = &self.surfaces.frames()[surface.frame as usize];
-            let columns = LobeColumns {
+            let mut columns = LobeColumns {
                 wo: Triples::of(&frame.wo),
                 views: self.surfaces.views(surface),
                 wi: Triples::of(&frame.wi),
@@ -169,6 +176,11 @@ impl Lobes {
                 scale: self.layers.scale_of(lobe.layer, &self.ones),
                 pick: &self.picks[n * index..n * (index + 1)],
             };
+            if let Some(medium) = self.media.get(self.layers.medium(lobe.layer)) {
+                medium.carry(&columns, surface.kind.is_diffuse(), &mut self.within);
+                columns.weight = Triples::packed(&self.within, n);
+                (columns.scale, columns.pick) = (&self.within[3 * n..4 * n], &self.within[4 * n..]);
+            }
             let (x, y, z) = (&mut out.f_cos.x, &mut out.f_cos.y, &mut out.f_cos.z);
             with_source!(self.surfaces, surface, |M, source| evaluate_lanes::<M, _>(
                 source,

@@ -6,6 +6,7 @@ mod kinds;
 mod layering;
 mod leaves;
 pub mod lobes;
+mod media;
 pub mod print;
 mod sampling;
 pub mod settings;

@@ -64,6 +64,7 @@ impl Lobes {
         out.event.resize(n, event::NONE);
         self.choose(xi);
         self.draw(&mut out.wi);
+        self.leave_media(&mut out.wi);
         let mut evaluation = std::mem::take(&mut self.scratch.evaluation);
         self.evaluate(&out.wi, &mut evaluation);
         let (x, y, z) = (&mut out.weight.x, &mut out.weight.y, &mut out.weight.z);
@@ -143,6 +144,17 @@ impl Lobes {
         }
     }
 
+    /// Brings the directions that were drawn inside a medium to the outside.
+    fn leave_media(&self, wi: &mut Column3) {
+        for lane in (0..self.lanes).filter(|_| !self.media.is_empty()) {
+            let Some(lobe) = self.lobes.get(self.scratch.chosen[lane] as usize) else { continue };
+            let frame = self.surfaces.list[lobe.surface as usize].frame;
+            if let Some(frame) = self.surfaces.frames().get(frame as usize) {
+                wi.set(lane, self.media.leave(frame.medium, self.surfaces.frames(), lane, wi.get(lane)));
+            }
+        }
+    }
+
     /// Names the event of a lane, and weighs lobes of one direction, which the evaluation knows nothing of.
     fn settle(&self, lane: usize, out: &mut Samples) {
         let chosen = self.scratch.chosen[lane];
@@ -162,6 +174,8 @@ impl Lobes {
             let part = if visible { self.scratch.parts[lane] * scale / pick } else { 0.0 };
             let at = 3 * n * chosen as usize + lane;
             let weight = Vec3::new(self.weights[at], self.weights[at + n], self.weights[at + 2 * n]) * part;
+            let tint = self.media.get(self.layers.medium(lobe.layer)).map_or(Vec3::ONE, |medium| medium.tint(lane));
+            let weight = weight * tint;
             let good = weight.is_finite() && weight != Vec3::ZERO;
             out.weight.set(lane, if good { weight } else { Vec3::ZERO });
             out.pdf[lane] = if good { pick } else { 0.0 };

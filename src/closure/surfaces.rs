@@ -11,6 +11,7 @@ use super::batch::{
     Each, NormalColumns, Same, Triples, Views, localise_lanes, normal_lanes, tangent_lanes, view_lanes,
 };
 use super::kinds::{Kind, with_source};
+use super::media::Media;
 use crate::bsdf::{MAX_PARAMS, Params, Scatter};
 use crate::closure::tree::{Floats, Tree};
 use crate::math::columns::Column3;
@@ -66,7 +67,9 @@ pub struct Request<'a> {
 /// A shading frame a lane.
 #[derive(Debug, Default)]
 pub struct FrameColumns {
-    key: Option<([Floats; 3], Option<[Floats; 3]>)>,
+    key: Option<([Floats; 3], Option<[Floats; 3]>, u32)>,
+    /// The medium its directions run in, or [`NONE`].
+    pub medium: u32,
     /// Tangents.
     pub tangent: Column3,
     /// Bitangents.
@@ -115,6 +118,17 @@ pub struct Surfaces {
     frames_used: usize,
 }
 
+/// How a surface is seen.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// The viewer, as its direction runs in the medium.
+    pub wo: &'a Column3,
+    /// Geometric normals.
+    pub ng: &'a Column3,
+    /// The medium over the surface, or [`NONE`].
+    pub medium: u32,
+}
+
 /// How many of the newest frames are compared with a new one; a scene rarely has more normals than this.
 const FRAMES_COMPARED: usize = 8;
 
@@ -134,9 +148,9 @@ impl Surfaces {
     }
 
     /// Brings light directions into every frame in use.
-    pub fn localise(&mut self, wi: &Column3) {
+    pub fn localise(&mut self, media: &Media, wi: &Column3) {
         for frame in &mut self.frames[..self.frames_used] {
-            frame.localise(wi);
+            frame.localise(media.get(frame.medium).map_or(wi, |medium| &medium.wi));
         }
     }
 
@@ -240,16 +254,10 @@ impl Surfaces {
     }
 
     /// The frame of a normal and tangent; one that was made for the same columns is used again.
-    pub fn frame(
-        &mut self,
-        tree: &Tree,
-        normal: [Floats; 3],
-        tangent: Option<[Floats; 3]>,
-        wo: &Column3,
-        ng: &Column3,
-    ) -> u32 {
+    pub fn frame(&mut self, tree: &Tree, normal: [Floats; 3], tangent: Option<[Floats; 3]>, seen: &Seen) -> u32 {
+        let Seen { wo, ng, medium } = *seen;
         let newest = self.frames_used.saturating_sub(FRAMES_COMPARED);
-        let key = Some((normal, tangent));
+        let key = Some((normal, tangent, medium));
         if let Some(found) = (newest..self.frames_used).find(|&i| self.frames[i].key == key) {
             return found as u32;
         }
@@ -260,6 +268,7 @@ impl Surfaces {
         self.frames_used += 1;
         let frame = &mut self.frames[index];
         frame.key = key;
+        frame.medium = medium;
         for column in [&mut frame.tangent, &mut frame.bitangent, &mut frame.normal, &mut frame.wo, &mut frame.wi] {
             column.resize(n);
         }

@@ -45,7 +45,7 @@ pub(super) fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &
     let tint = arguments.triple(first + 1);
     let share = Floats::Uniform(settings.sheen_sampling.uniform_share());
     let params = [arguments.float(first + 2), share];
-    let frame = surfaces.frame(tree, arguments.triple(first), None, context.wo, context.ng);
+    let frame = surfaces.frame(tree, arguments.triple(first), None, &context.seen);
     let mut leaf = Leaf { tint: Some(tint), ..Leaf::default() };
     if first == 1 {
         leaf.base = arguments.closure(0);

@@ -12,7 +12,7 @@ pub(super) fn leaf(surfaces: &mut Surfaces, context: &LeafContext, arguments: &A
     let (distribution, refract) = (arguments.ints(0), arguments.ints(6));
     let (x, y, eta) = (arguments.float(3), arguments.float(4), arguments.float(5));
     let tangent = if x == y { None } else { Some(arguments.triple(2)) };
-    let frame = surfaces.frame(tree, arguments.triple(1), tangent, context.wo, context.ng);
+    let frame = surfaces.frame(tree, arguments.triple(1), tangent, &context.seen);
     let floats_vary = [x, y, eta].iter().any(|v| matches!(v, Floats::Varying(_)));
     let beckmann = |lane| arguments.text(distribution, lane) == "beckmann";
     let smooth = |lane| {

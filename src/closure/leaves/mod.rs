@@ -4,15 +4,16 @@
 //! that the boundary is smooth) splits a leaf into parts, each with a gate that is 1 in its lanes.
 
 mod cloth;
+mod coat;
 mod microfacet;
 
 use super::kinds::Kind;
+use super::media::Coat;
 use super::settings::{Layering, Settings};
-use super::surfaces::{NONE, Request, Surfaces};
+use super::surfaces::{NONE, Request, Seen, Surfaces};
 use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
 use crate::lang::closures::{ClosureSpec, Model};
 use crate::lang::symbols::Symbol;
-use crate::math::columns::Column3;
 
 /// A surface of a leaf, with the column of its coverage t when it lies on top of something.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +38,7 @@ pub struct Cover {
 }
 
 /// A leaf made ready.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Leaf {
     /// Its surfaces.
     pub parts: Vec<Part>,
@@ -47,6 +48,10 @@ pub struct Leaf {
     pub tint: Option<[Floats; 3]>,
     /// The tree on top, of `layer`.
     pub top: Option<NodeId>,
+    /// The coat over the base, of `coat`; flattening makes a medium of it.
+    pub coat: Option<Coat>,
+    /// The medium under the coat.
+    pub inner: Option<u32>,
     /// What lies under it.
     pub base: Option<NodeId>,
     /// True for light sources.
@@ -61,10 +66,8 @@ pub struct LeafContext<'a> {
     pub tree: &'a Tree,
     /// Choices of the render.
     pub settings: Settings,
-    /// The viewer.
-    pub wo: &'a Column3,
-    /// Geometric normals.
-    pub ng: &'a Column3,
+    /// How the surface is seen.
+    pub seen: Seen<'a>,
 }
 
 /// The parameters of one leaf, by position, with defaults for what is missing.
@@ -143,7 +146,7 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
     let mut single = |kind, params: &[Floats], eta| {
         let frame = match kind {
             Kind::Transparent => NONE,
-            _ => surfaces.frame(tree, arguments.triple(0), None, context.wo, context.ng),
+            _ => surfaces.frame(tree, arguments.triple(0), None, &context.seen),
         };
         let request = Request { kind, closure: spec.name, frame, params, eta, gate: NONE };
         Leaf { parts: vec![Part { surface: surfaces.push(tree, request), t: 0 }], ..Leaf::default() }
@@ -162,6 +165,7 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::Microfacet => microfacet::leaf(surfaces, context, &arguments),
         Model::Sheen => cloth::sheen(surfaces, context, &arguments, 1),
         Model::SheenBsdf => cloth::sheen(surfaces, context, &arguments, 0),
+        Model::Coat => coat::leaf(surfaces, context, &arguments),
         Model::Layer => cloth::layer(surfaces, context, &arguments),
     }
 }

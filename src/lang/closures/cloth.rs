@@ -1,4 +1,4 @@
-//! Sheen, and the layering it needs.
+//! Sheen, layers and coats: the closures that nest others.
 
 use super::{Claim, ClosureSpec, Model, NORMAL, ParamKind, ParamSpec, Waiver, choice, param, spec};
 
@@ -66,5 +66,31 @@ pub(super) fn specs() -> Vec<ClosureSpec> {
             &[LAYERING],
             "lays one closure over another by albedo scaling",
         ),
+        coat(),
     ]
+}
+
+/// The layer of Weidlich and Wilkie.
+fn coat() -> ClosureSpec {
+    use super::ParamKind::*;
+    let params = [
+        param("base", Closure, "what lies under the coat"),
+        NORMAL,
+        param("roughness", Float, "GGX width of the boundary, 0..1; 0 is smooth").tried(&[0.0, 0.05, 0.2, 0.5, 1.0]),
+        param(
+            "eta",
+            Float,
+            "index of refraction of the coat over what is outside; 1 and above for a coat in air, 0 is a mirror",
+        )
+        .tried(&[1.5, 1.0, 1.33, 2.0, 3.0]),
+        param("absorption", Color, "absorption coefficient of the coat, 1/length, >= 0").tried(&[0.0, 1.0]),
+        param("thickness", Float, "thickness of the coat, length, >= 0").tried(&[0.1, 1.0]),
+    ];
+    spec(
+        "coat",
+        Model::Coat,
+        &params,
+        &[],
+        "a clear or tinted dielectric coat over any closure (Weidlich and Wilkie 2007)",
+    )
 }

@@ -102,6 +102,8 @@ pub enum Model {
     SheenBsdf,
     /// `layer(top, base)`
     Layer,
+    /// `coat(base, N, roughness, eta, absorption, thickness)`
+    Coat,
     /// A closure of the host, numbered by the host; velour carries it in trees and gives it no meaning.
     Host(u32),
 }

@@ -1,0 +1,247 @@
+//! Media: the directions under a clear coat, which bends them, and what is lost on the way in and out.
+//!
+//! A coat has a refracting boundary and an absorbing inside. Each medium keeps the viewer's and the light's direction as they
+//! run inside it, so the lobes below are evaluated there as if nothing lay above. Light that leaves on the other side of
+//! the surface does not cross the coat again.
+//!
+//! Source: Weidlich and Wilkie 2007, eq. 6 to 9: f = f_coat + T_i T_o f_base(wi', wo') exp(-s (1/ci' + 1/co')), with the
+//! optical depth s of the coat.
+//! Departs from source: their factor for light that facets shadow (G) is 1, which never adds light.
+//!
+//! Decision (2026-11-22): the paper's formula takes f of the base as it stands, which is right for a diffuse base, where the
+//! light that the boundary throws back is scattered again and finds its way out, and sends out eta² times too much from a
+//! glossy base, whose lobe the boundary widens. So diffuse lobes follow the paper, and all others keep the energy of
+//! their lobe (f / eta²), instead of one rule for both.
+
+use super::batch::{LobeColumns, Triples};
+use super::surfaces::FrameColumns;
+use crate::bsdf::fresnel::dielectric;
+use crate::bsdf::select;
+use crate::math::columns::Column3;
+use crate::math::elementary::exp;
+use glam::Vec3;
+use multiversion::multiversion;
+
+/// One medium.
+#[derive(Debug, Default)]
+pub struct Medium {
+    /// The medium around it, or [`super::surfaces::NONE`]; always an earlier one.
+    pub parent: u32,
+    /// The frame whose normal the coat has.
+    frame: u32,
+    /// Index of refraction inside over outside; at 0 and below nothing passes.
+    eta: Vec<f32>,
+    /// Optical depth of a perpendicular crossing, when it absorbs.
+    depth: Option<Column3>,
+    /// The viewer inside, world.
+    pub wo: Column3,
+    /// The light of the last evaluation inside, world.
+    pub wi: Column3,
+    /// Part of the light that passes the boundary on the viewer's side.
+    pub pass_o: Vec<f32>,
+    /// The same on the light's side.
+    pub pass_i: Vec<f32>,
+    /// What absorption leaves on the viewer's side, all media around included.
+    pub tint_o: Column3,
+    /// The same on the light's side.
+    pub tint_i: Column3,
+    /// Solid angle inside over outside of the light's direction, all media around included.
+    pub density: Vec<f32>,
+    /// Cosine outside over inside of the light's direction, all media around included.
+    pub spread: Vec<f32>,
+    /// True when it, or a medium around it, absorbs.
+    pub colored: bool,
+}
+
+/// What a medium is made from.
+#[derive(Debug)]
+pub struct Coat {
+    /// The frame of its boundary.
+    pub frame: u32,
+    /// Index of refraction inside over outside.
+    pub eta: Vec<f32>,
+    /// Optical depth of a perpendicular crossing, when it absorbs.
+    pub depth: Option<Column3>,
+}
+
+/// All media of a batch.
+#[derive(Debug, Default)]
+pub struct Media {
+    list: Vec<Medium>,
+}
+
+impl Media {
+    /// Empties the store.
+    pub fn clear(&mut self) {
+        self.list.clear();
+    }
+
+    /// True when there is none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The medium of an index, unless it is [`super::surfaces::NONE`].
+    pub fn get(&self, medium: u32) -> Option<&Medium> {
+        self.list.get(medium as usize)
+    }
+
+    /// Adds the medium under a coat, with what the viewer decides, and gives its index.
+    pub fn push(&mut self, parent: u32, coat: Coat, frames: &[FrameColumns], wo: &Column3) -> u32 {
+        let n = wo.len();
+        let Coat { frame, mut eta, depth } = coat;
+        for value in &mut eta {
+            *value = if value.is_finite() { value.min(1e3) } else { 1.0 };
+        }
+        let outer = self.get(parent);
+        let colored = depth.is_some() || outer.is_some_and(|m| m.colored);
+        let mut medium = Medium { parent, frame, eta, depth, colored, ..Medium::default() };
+        for column in [&mut medium.wo, &mut medium.wi, &mut medium.tint_o, &mut medium.tint_i] {
+            column.resize(n);
+        }
+        for column in [&mut medium.pass_o, &mut medium.pass_i, &mut medium.density, &mut medium.spread] {
+            column.resize(n, 1.0);
+        }
+        let from = Crossing { normal: Triples::of(&frames[frame as usize].normal), eta: &medium.eta };
+        let above = Triples::of(outer.map_or(wo, |m| &m.wo));
+        let w = &mut medium.wo;
+        // The viewer's solid angle and spread are not needed; their columns are filled anew with every light.
+        let (density, spread) = (&mut medium.density, &mut medium.spread);
+        enter_lanes(from, above, &mut w.x, &mut w.y, &mut w.z, &mut medium.pass_o, density, spread);
+        for lane in 0..n {
+            let around = outer.filter(|m| m.colored).map_or(Vec3::ONE, |m| m.tint_o.get(lane));
+            let cos = frames[frame as usize].normal.get(lane).dot(medium.wo.get(lane));
+            medium.tint_o.set(lane, around * absorption(medium.depth.as_ref(), lane, cos));
+        }
+        self.list.push(medium);
+        self.list.len() as u32 - 1
+    }
+
+    /// Brings the light's directions into every medium.
+    pub fn light(&mut self, frames: &[FrameColumns], wi: &Column3) {
+        for index in 0..self.list.len() {
+            let (before, rest) = self.list.split_at_mut(index);
+            let Medium { parent, frame, eta, depth, wi: inside, tint_i, pass_i, density, spread, colored, .. } =
+                &mut rest[0];
+            let outer = before.get(*parent as usize);
+            let from = Crossing { normal: Triples::of(&frames[*frame as usize].normal), eta };
+            let above = Triples::of(outer.map_or(wi, |m| &m.wi));
+            enter_lanes(from, above, &mut inside.x, &mut inside.y, &mut inside.z, pass_i, density, spread);
+            if let Some(outer) = outer {
+                for lane in 0..wi.len() {
+                    density[lane] *= outer.density[lane];
+                    spread[lane] *= outer.spread[lane];
+                }
+            }
+            for lane in (0..wi.len()).filter(|_| *colored) {
+                let around = outer.filter(|m| m.colored).map_or(Vec3::ONE, |m| m.tint_i.get(lane));
+                let cos = frames[*frame as usize].normal.get(lane).dot(inside.get(lane));
+                tint_i.set(lane, around * absorption(depth.as_ref(), lane, cos));
+            }
+        }
+    }
+
+    /// The direction outside of all media that a direction in one becomes; zero when a boundary throws it back.
+    pub fn leave(&self, medium: u32, frames: &[FrameColumns], lane: usize, wi: Vec3) -> Vec3 {
+        let (mut wi, mut at) = (wi, medium);
+        while let Some(medium) = self.get(at) {
+            let n = frames[medium.frame as usize].normal.get(lane);
+            let (cos, eta) = (n.dot(wi), medium.eta[lane].max(1e-3));
+            if cos > 0.0 {
+                let outside = 1.0 - eta * eta * (1.0 - cos * cos).max(0.0);
+                if outside <= 0.0 {
+                    return Vec3::ZERO;
+                }
+                wi = (wi - n * cos) * eta + n * outside.sqrt();
+                wi *= 1.0 / wi.length();
+            }
+            at = medium.parent;
+        }
+        wi
+    }
+}
+
+impl Medium {
+    /// What absorption leaves on the viewer's side, all media around included.
+    pub fn viewer_tint(&self, lane: usize) -> Vec3 {
+        if self.colored { self.tint_o.get(lane) } else { Vec3::ONE }
+    }
+
+    /// What absorption leaves on the way in and out, all media around included.
+    pub fn tint(&self, lane: usize) -> Vec3 {
+        if self.colored { self.tint_o.get(lane) * self.tint_i.get(lane) } else { Vec3::ONE }
+    }
+
+    /// The weight, scale and probability of a lobe, brought from this medium to the outside, as five columns.
+    pub fn carry(&self, from: &LobeColumns, diffuse: bool, out: &mut Vec<f32>) {
+        let n = self.density.len();
+        out.resize(5 * n, 0.0);
+        let (weight, rest) = out.split_at_mut(3 * n);
+        for (k, given) in [from.weight.x, from.weight.y, from.weight.z].into_iter().enumerate() {
+            let tints =
+                [(&self.tint_o.x, &self.tint_i.x), (&self.tint_o.y, &self.tint_i.y), (&self.tint_o.z, &self.tint_i.z)];
+            let here = &mut weight[k * n..(k + 1) * n];
+            here.copy_from_slice(&given[..n]);
+            for lane in (0..n).filter(|_| self.colored) {
+                here[lane] *= tints[k].0[lane] * tints[k].1[lane];
+            }
+        }
+        let (scale, pick) = rest.split_at_mut(n);
+        let spread = if diffuse { &self.spread } else { &self.density };
+        for lane in 0..n {
+            scale[lane] = from.scale[lane] * spread[lane];
+            pick[lane] = from.pick[lane] * self.density[lane];
+        }
+    }
+}
+
+/// What absorption leaves on a path through a coat at this inner cosine; light that leaves below does not cross it.
+fn absorption(depth: Option<&Column3>, lane: usize, cos: f32) -> Vec3 {
+    match depth {
+        Some(depth) if cos > 0.0 => {
+            let path = -depth.get(lane) / cos.max(1e-6);
+            Vec3::new(exp(path.x), exp(path.y), exp(path.z))
+        }
+        _ => Vec3::ONE,
+    }
+}
+
+/// The boundary that [`enter_lanes`] crosses.
+#[derive(Clone, Copy)]
+struct Crossing<'a> {
+    normal: Triples<'a>,
+    eta: &'a [f32],
+}
+
+/// Directions inside a coat from those outside, what part of the light passes the boundary, the ratio of the solid angles
+/// (inside over outside) and that of the cosines (outside over inside). Directions below stay as they are.
+#[multiversion(targets("x86_64+avx2"))]
+fn enter_lanes(
+    from: Crossing<'_>,
+    outside: Triples<'_>,
+    x: &mut [f32],
+    y: &mut [f32],
+    z: &mut [f32],
+    pass: &mut [f32],
+    density: &mut [f32],
+    spread: &mut [f32],
+) {
+    let n = x.len();
+    let (y, z, pass) = (&mut y[..n], &mut z[..n], &mut pass[..n]);
+    let (density, spread, eta) = (&mut density[..n], &mut spread[..n], &from.eta[..n]);
+    let (normal, outside) = (from.normal.narrow(n), outside.narrow(n));
+    for i in 0..n {
+        let (m, w, eta) = (normal.at(i), outside.at(i), eta[i]);
+        let cos = m.dot(w);
+        let above = cos > 0.0;
+        let inverse = 1.0 / eta.max(1e-3);
+        let inner = (1.0 - inverse * inverse * (1.0 - cos * cos).max(0.0)).max(1e-12).sqrt();
+        let bent = (w - m * cos) * inverse + m * inner;
+        x[i] = select(above, bent.x, w.x);
+        y[i] = select(above, bent.y, w.y);
+        z[i] = select(above, bent.z, w.z);
+        pass[i] = select(above, 1.0 - dielectric(cos, eta), 1.0);
+        spread[i] = select(above, cos / inner, 1.0);
+        density[i] = select(above, inverse * inverse * cos / inner, 1.0);
+    }
+}

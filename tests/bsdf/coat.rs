@@ -1,0 +1,204 @@
+//! Clear coats: the formula of Weidlich and Wilkie, absorption, energy over every base, and nesting.
+
+use crate::{SEED, direction, narrow};
+use glam::Vec3;
+use velour::bsdf::fresnel::dielectric;
+use velour::closure::{Evaluation, Lobes, Samples, Settings, event};
+use velour::compile::compile;
+use velour::exec::{Machine, Points};
+use velour::math::columns::Column3;
+use velour::math::quadrature::gauss_legendre;
+use velour::measure::furnace::{hemisphere, integrate, sample_mean};
+use velour::measure::statistics::Random;
+
+/// The lobes of a closure expression seen at a cosine.
+fn lobes(expression: &str, cos: f64) -> Lobes {
+    let wo = narrow(direction(cos, 0.3));
+    let shader = compile(&format!("surface s() {{ Ci = {expression}; }}")).expect("a right shader");
+    let group = shader.group().build().expect("a group");
+    let points = Points::single(wo);
+    let mut machine = Machine::new();
+    let mut lobes = Lobes::new(Settings::default());
+    lobes.flatten(group.table(), machine.shade(&group, &points), &Column3::splat(wo, 1), &points.ng);
+    assert!(lobes.dropped().is_empty(), "{:?}", lobes.dropped());
+    lobes
+}
+
+fn f_cos(lobes: &mut Lobes, wi: Vec3) -> Vec3 {
+    let mut out = Evaluation::default();
+    lobes.evaluate(&Column3::splat(wi, 1), &mut out);
+    out.f_cos.get(0)
+}
+
+/// The cosine inside a coat.
+fn inner(cos: f64, eta: f64) -> f64 {
+    (1.0 - (1.0 - cos * cos) / (eta * eta)).sqrt()
+}
+
+fn pass(cos: f64, eta: f64) -> f64 {
+    1.0 - f64::from(dielectric(cos as f32, eta as f32))
+}
+
+/// Reflected light of one lane by sampling: mean and standard error of its first component.
+fn reflected(lobes: &mut Lobes, count: u32) -> (f64, f64) {
+    let mut random = Random(SEED);
+    let means: Vec<f64> = (0..20).map(|_| sample_mean(lobes, 1, count / 20, || random.number())[0][0]).collect();
+    let mean = means.iter().sum::<f64>() / 20.0;
+    let spread = means.iter().map(|m| (m - mean) * (m - mean)).sum::<f64>() / (19.0 * 20.0);
+    (mean, spread.sqrt())
+}
+
+#[test]
+fn a_coat_of_air_changes_nothing() {
+    let base = "0.7 * oren_nayar(N, 0.4) + 0.2 * microfacet(\"ggx\", N, 0.3, 1.5, 0)";
+    let (mut bare, mut coated) = (lobes(base, 0.6), lobes(&format!("coat({base}, N, 0, 1, color(3), 0)"), 0.6));
+    for (cos, phi) in [(0.9, 0.1), (0.5, 3.0), (0.1, 5.0)] {
+        let wi = narrow(direction(cos, phi));
+        let (a, b) = (f_cos(&mut bare, wi), f_cos(&mut coated, wi));
+        assert!((a - b).abs().max_element() < 1e-5 * a.max_element(), "{a} {b}");
+    }
+}
+
+#[test]
+fn a_diffuse_base_follows_the_published_formula() {
+    for (cos_o, cos_i) in [(1.0, 0.7), (0.6, 0.6), (0.2, 0.9), (0.05, 0.3)] {
+        let mut coated = lobes("coat(0.8 * diffuse(N), N, 0, 1.5, color(0.5, 1, 2), 0.3)", cos_o);
+        let f = f_cos(&mut coated, narrow(direction(cos_i, 2.0))) / cos_i as f32;
+        let path = 1.0 / inner(cos_i, 1.5) + 1.0 / inner(cos_o, 1.5);
+        for (k, absorption) in [0.5, 1.0, 2.0].into_iter().enumerate() {
+            let through = pass(cos_o, 1.5) * pass(cos_i, 1.5) * (-absorption * 0.3 * path).exp();
+            let expected = 0.8 / std::f64::consts::PI * through;
+            assert!((f64::from(f[k]) / expected - 1.0).abs() < 1e-4, "{cos_o} {cos_i}: {f} {expected}");
+        }
+    }
+}
+
+#[test]
+fn white_under_a_coat_reflects_what_passes_twice() {
+    // Fresnel's part, and of the rest what the boundary lets out on average.
+    let out: f64 = gauss_legendre(64, 0.0, 1.0).iter().map(|n| 2.0 * n.weight * n.x * pass(n.x, 1.5)).sum();
+    for cos in [0.1, 0.5, 1.0] {
+        let expected = 1.0 - pass(cos, 1.5) + pass(cos, 1.5) * out;
+        let (mean, error) = reflected(&mut lobes("coat(diffuse(N), N, 0, 1.5, color(0), 1)", cos), 200_000);
+        assert!((mean - expected).abs() < 4.0 * error && error < 4e-3, "{cos}: {mean} +- {error}, {expected}");
+        let base = integrate(&mut lobes("coat(diffuse(N), N, 0, 1.5, color(0), 1)", cos), 1, &hemisphere(48, 64, cos));
+        assert!((base[0][0] - pass(cos, 1.5) * out).abs() < 1e-3, "{cos}: {:?}", base[0]);
+    }
+}
+
+#[test]
+fn a_mirror_under_a_coat_keeps_its_energy() {
+    for cos in [0.15, 0.6, 1.0] {
+        let mut coated = lobes("coat(reflection(N, 0), N, 0, 1.5, color(1, 0, 0), 0.25)", cos);
+        let wo = narrow(direction(cos, 0.3));
+        let expected = pass(cos, 1.5).powi(2) * (-0.5 / inner(cos, 1.5)).exp();
+        let (mut samples, mut random, mut sums) = (Samples::default(), Random(SEED), [0.0f64; 3]);
+        for _ in 0..20_000 {
+            let xi = Vec3::new(random.number(), random.number(), random.number());
+            coated.sample(&Column3::splat(xi, 1), &mut samples);
+            assert_eq!(samples.event[0], event::DELTA_REFLECT);
+            assert!((samples.wi.get(0) - Vec3::new(-wo.x, -wo.y, wo.z)).length() < 1e-5);
+            for (k, sum) in sums.iter_mut().enumerate() {
+                *sum += f64::from(samples.weight.get(0)[k]) / 20_000.0;
+            }
+        }
+        let mirror = 1.0 - pass(cos, 1.5);
+        assert!((sums[0] - mirror - expected).abs() < 0.02, "{cos}: {sums:?} {mirror} {expected}");
+        assert!((sums[1] - mirror - pass(cos, 1.5).powi(2)).abs() < 0.02, "{cos}: {sums:?}");
+    }
+}
+
+#[test]
+fn no_base_gains_energy_under_a_coat() {
+    let bases = [
+        "diffuse(N)",
+        "microfacet(\"ggx\", N, 0.05, 0, 0)",
+        "microfacet(\"ggx\", N, 0.5, 0, 0)",
+        "sheen(diffuse(N), N, color(1), 0.2)",
+        "oren_nayar(N, 1)",
+        "translucent(N)",
+        "coat(diffuse(N), N, 0.3, 1.3, color(0), 0)",
+        "transparent()",
+    ];
+    for base in bases {
+        for (eta, rough) in [(1.5, 0.0), (2.5, 0.4)] {
+            for cos in [0.05, 0.4, 1.0] {
+                let mut coated = lobes(&format!("coat({base}, N, {rough}, {eta}, color(0), 1)"), cos);
+                let (mean, error) = reflected(&mut coated, 20_000);
+                assert!(
+                    mean < 1.0 + 1e-4 + 4.0 * error && error < 0.03,
+                    "{base} {eta} {rough} {cos}: {mean} +- {error}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn coats_are_reciprocal() {
+    let expression = "coat(0.7 * diffuse(N) + microfacet(\"ggx\", N, 0.3, 0, 0), N, 0.2, 1.6, color(1, 2, 3), 0.2)";
+    for (a, b, phi) in [(0.9, 0.2, 1.0), (0.5, 0.6, 3.0), (0.05, 0.99, 2.0)] {
+        let (wo, wi) = (narrow(direction(a, 0.3)), narrow(direction(b, phi)));
+        let there = f_cos(&mut lobes(expression, a), wi) / wi.z;
+        // The other way round: the viewer stands at wi, whose azimuth the frame does not care for.
+        let back = narrow(direction(a, 0.3 - phi + 0.3));
+        let here = f_cos(&mut lobes(expression, b), back) / wo.z;
+        assert!((there - here).abs().max_element() < 1e-4 * there.max_element(), "{there} {here}");
+    }
+}
+
+#[test]
+fn one_leaf_serves_inside_and_outside_of_a_coat() {
+    let shared = "0.5 * diffuse(N) + coat(diffuse(N), N, 0, 1.5, color(1), 0.1)";
+    let wi = narrow(direction(0.4, 1.0));
+    let sum = f_cos(&mut lobes(shared, 0.7), wi);
+    let parts = f_cos(&mut lobes("0.5 * diffuse(N)", 0.7), wi)
+        + f_cos(&mut lobes("coat(diffuse(N), N, 0, 1.5, color(1), 0.1)", 0.7), wi);
+    assert!((sum - parts).abs().max_element() < 1e-6, "{sum} {parts}");
+    // A closure variable that is used twice is one node of the tree.
+    let shader =
+        compile("surface s() { closure color d = diffuse(N); Ci = 0.5 * d + coat(d, N, 0, 1.5, color(1), 0.1); }")
+            .expect("a right shader");
+    let group = shader.group().build().expect("a group");
+    let wo = narrow(direction(0.7, 0.3));
+    let (points, mut machine) = (Points::single(wo), Machine::new());
+    let mut shared = Lobes::new(Settings::default());
+    shared.flatten(group.table(), machine.shade(&group, &points), &Column3::splat(wo, 1), &points.ng);
+    assert!((f_cos(&mut shared, wi) - parts).abs().max_element() < 1e-6);
+}
+
+#[test]
+fn emission_under_a_coat_is_tinted_and_dimmed() {
+    let coated = lobes("coat(emission(), N, 0, 1.5, color(1, 2, 0), 0.5)", 0.6);
+    let light = coated.emission().get(0);
+    for (k, absorption) in [1.0, 2.0, 0.0].into_iter().enumerate() {
+        let expected = pass(0.6, 1.5) * (-absorption * 0.5 / inner(0.6, 1.5)).exp();
+        assert!((f64::from(light[k]) - expected).abs() < 1e-5, "{light} {expected}");
+    }
+}
+
+#[test]
+fn strange_coats_do_no_harm() {
+    for parameters in [
+        "0, 0, color(0), 1",
+        "2, 1e30, color(-1), -1",
+        "-1, -3, color(1e38), 1e38",
+        "0.3, 1.5, color(1e38), 0",
+        "0, 1, color(1), 1e-38",
+    ] {
+        for cos in [1.0, 0.3, 1e-6] {
+            let mut coated = lobes(&format!("coat(diffuse(N), N, {parameters})"), cos);
+            let mut out = Evaluation::default();
+            for wi in [Vec3::Z, -Vec3::Z, narrow(direction(1e-10, 1.0)), narrow(direction(cos, 3.4))] {
+                coated.evaluate(&Column3::splat(wi, 1), &mut out);
+                let f = out.f_cos.get(0);
+                assert!(
+                    f.is_finite() && f.min_element() >= 0.0 && out.pdf[0].is_finite(),
+                    "{parameters} {cos} {wi}: {f}"
+                );
+            }
+            let (mean, error) = reflected(&mut coated, 20_000);
+            assert!(mean.is_finite() && mean < 1.001 + 4.0 * error, "{parameters} {cos}: {mean}");
+        }
+    }
+}
