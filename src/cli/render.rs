@@ -1,7 +1,7 @@
 //! `velour render`: a scene in, an image out.
 
 use super::{CompileArgs, Failure, say, tell};
-use crate::closure::settings::Shadowing;
+use crate::closure::settings::{Shadowing, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::Report;
 use crate::render::{Image, Plan, Progress, Settings, output, render};
@@ -57,6 +57,9 @@ pub struct RenderArgs {
     /// Keep an alpha channel
     #[arg(long)]
     alpha: bool,
+    /// How directions of sheen are drawn: ltc, uniform, cosine or normals
+    #[arg(long, default_value = "ltc")]
+    sheen_sampling: SheenSampling,
     /// Say what the scene needs, and what it does not, before rendering
     #[arg(long)]
     explain: bool,
@@ -133,6 +136,7 @@ fn settings(args: &RenderArgs) -> Settings {
         closure: closure::Settings {
             layering: args.layering,
             shadowing: args.shadowing,
+            sheen_sampling: args.sheen_sampling,
             softening: args.softening,
             ..defaults.closure
         },

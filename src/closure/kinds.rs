@@ -8,6 +8,7 @@ use crate::bsdf::sheen::shadowing::Shadowing;
 macro_rules! with_source {
     ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
         use $crate::bsdf::sheen::shadowing::Shadowing;
+        use $crate::bsdf::sheen::normals::ByNormals;
         use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
         use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar, velvet};
         use $crate::closure::kinds::Kind;
@@ -37,6 +38,11 @@ macro_rules! with_source {
             Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
             Kind::Sheen(Shadowing::Published, false) => run!(Sheen<PUBLISHED, false>),
             Kind::Sheen(Shadowing::Ashikhmin, _) => run!(Sheen<ASHIKHMIN, false>),
+            Kind::SheenByNormals(Shadowing::Exact, true) => run!(ByNormals<EXACT, true>),
+            Kind::SheenByNormals(Shadowing::Exact, false) => run!(ByNormals<EXACT, false>),
+            Kind::SheenByNormals(Shadowing::Published, true) => run!(ByNormals<PUBLISHED, true>),
+            Kind::SheenByNormals(Shadowing::Published, false) => run!(ByNormals<PUBLISHED, false>),
+            Kind::SheenByNormals(Shadowing::Ashikhmin, _) => run!(ByNormals<ASHIKHMIN, false>),
             Kind::Microfacet { beckmann: false, refract: false } => run!(Microfacet<false, false>),
             Kind::Microfacet { beckmann: false, refract: true } => run!(Microfacet<false, true>),
             Kind::Microfacet { beckmann: true, refract: false } => run!(Microfacet<true, false>),
@@ -60,6 +66,8 @@ pub enum Kind {
     Velvet,
     /// Sheen with its shadowing term, softened or not.
     Sheen(Shadowing, bool),
+    /// The same, sampled by its half vector.
+    SheenByNormals(Shadowing, bool),
     /// Rough boundary.
     Microfacet {
         /// Beckmann's distribution, otherwise GGX.

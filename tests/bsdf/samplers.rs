@@ -5,6 +5,8 @@ use glam::Vec3;
 use velour::bsdf::lambert::{Lambert, Translucent};
 use velour::bsdf::microfacet::Microfacet;
 use velour::bsdf::oren_nayar::OrenNayar;
+use velour::bsdf::sheen::normals::ByNormals;
+use velour::bsdf::sheen::sampling::SheenSampling;
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
 use velour::bsdf::velvet::Velvet;
 use velour::bsdf::{Eval, Params, Scatter, Side, View, params};
@@ -83,6 +85,10 @@ fn samples_follow_their_densities() {
         passes::<Sheen<EXACT, false>>([r, 0.1, 0.0, 0.0], "sheen exact");
     }
     passes::<Sheen<EXACT, true>>([0.25, 1.0, 0.0, 0.0], "sheen, uniform");
+    passes::<Sheen<EXACT, true>>([0.25, 0.0, 1.0, 0.0], "sheen, cosine");
+    for r in [0.06, 0.25, 1.0] {
+        passes::<ByNormals<EXACT, true>>([r, 0.0, 0.0, 0.0], "sheen, by normals");
+    }
     passes::<Sheen<PUBLISHED, true>>([0.25, 0.1, 0.0, 0.0], "sheen published");
     passes::<Sheen<ASHIKHMIN, false>>([0.4, 0.1, 0.0, 0.0], "sheen ashikhmin");
     for (x, y) in [(0.3, 0.3), (0.2, 0.6), (1.0, 1.0)] {
@@ -148,15 +154,20 @@ fn relative_variance(model: &impl Scatter, c: f64) -> f64 {
 }
 
 #[test]
-fn the_default_sheen_sampler_beats_the_uniform_one() {
-    let cosines = [0.05, 0.25, 0.5, 0.75, 0.999];
+fn the_default_sheen_sampler_beats_the_others() {
+    fn mean<M: Scatter>(r: f32, scheme: SheenSampling) -> f64 {
+        let [share, plain] = scheme.params();
+        let model = M::prepare(params([r, share, plain]));
+        [0.05, 0.25, 0.5, 0.75, 0.999].iter().map(|&c| relative_variance(&model, c)).sum::<f64>() / 5.0
+    }
     for (r, bar) in [(0.06, 0.40), (0.15, 0.25), (0.25, 0.20), (0.4, 0.15), (0.65, 0.12), (1.0, 0.10)] {
-        let mean = |share: f32| {
-            let model = Sheen::<EXACT, true>::prepare(params([r, share]));
-            cosines.iter().map(|&c| relative_variance(&model, c)).sum::<f64>() / 5.0
-        };
-        let (proposal, uniform) = (mean(0.1), mean(1.0));
-        println!("r {r}: {proposal:.3} against {uniform:.3}");
-        assert!(proposal < bar && proposal < uniform, "r {r}: {proposal} {uniform}");
+        let [ltc, uniform, cosine] = [SheenSampling::Proposal, SheenSampling::Uniform, SheenSampling::Cosine]
+            .map(|scheme| mean::<Sheen<EXACT, true>>(r, scheme));
+        let normals = mean::<ByNormals<EXACT, true>>(r, SheenSampling::Normals);
+        println!("r {r}: ltc {ltc:.3}, uniform {uniform:.3}, cosine {cosine:.3}, normals {normals:.3}");
+        assert!(ltc < bar && ltc < uniform && ltc < cosine && ltc < normals, "r {r}");
+        let unsoftened = mean::<Sheen<EXACT, false>>(r, SheenSampling::Proposal);
+        println!("   without softening: ltc {unsoftened:.3}");
+        assert!(unsoftened < bar, "r {r}: {unsoftened}");
     }
 }

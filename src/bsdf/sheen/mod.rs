@@ -15,6 +15,7 @@
 pub mod albedo;
 pub mod charlie;
 pub mod fits;
+pub mod normals;
 pub mod reference;
 pub mod sampling;
 pub mod shadowing;
@@ -92,11 +93,11 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
 }
 
 impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
-    const PARAMS: usize = 2;
+    const PARAMS: usize = 3;
     const VIEW: usize = 5;
 
     #[inline(always)]
-    fn prepare([roughness, uniform_share, ..]: Params) -> Self {
+    fn prepare([roughness, uniform_share, plain, ..]: Params) -> Self {
         let r = charlie::clamp_roughness(roughness);
         let n = 1.0 / r;
         Sheen {
@@ -104,7 +105,7 @@ impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
             exact: Exact::new(n),
             published: Published::new(r),
             albedo: AlbedoCurve::new(Self::TERM, SOFT, r),
-            proposal: Proposal::new(Self::TERM, SOFT, r, uniform_share),
+            proposal: Proposal::new(Self::TERM, SOFT, r, uniform_share, plain),
         }
     }
 

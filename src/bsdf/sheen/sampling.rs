@@ -1,4 +1,5 @@
-//! Directions for the sheen: a two-parameter linearly transformed cosine mixed with the uniform hemisphere.
+//! Directions for the sheen: a two-parameter linearly transformed cosine mixed with the uniform hemisphere; and, to compare
+//! with it, the uniform hemisphere, the cosine and the half vector.
 //!
 //! Half-vector sampling does not pay here: most visible micronormals reflect below the horizon, and even perfect
 //! visible-normal sampling has 7 times the variance of the uniform hemisphere at r = 0.25.
@@ -15,6 +16,8 @@ use crate::bsdf::select;
 use crate::math::warp::{cosine_hemisphere, uniform_hemisphere, uniform_hemisphere_pdf};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
+use std::fmt;
+use std::str::FromStr;
 
 /// How sheen directions are sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -24,15 +27,44 @@ pub enum SheenSampling {
     Proposal,
     /// The uniform hemisphere, as the paper has it.
     Uniform,
+    /// The cosine.
+    Cosine,
+    /// The half vector with density D cos, by the inverse of its distribution; most directions fall below the horizon.
+    Normals,
 }
 
 impl SheenSampling {
-    /// The share of uniform samples of the scheme.
-    pub fn uniform_share(self) -> f32 {
+    /// All variants with the word that selects them.
+    pub const ALL: [(&'static str, SheenSampling); 4] = [
+        ("ltc", SheenSampling::Proposal),
+        ("uniform", SheenSampling::Uniform),
+        ("cosine", SheenSampling::Cosine),
+        ("normals", SheenSampling::Normals),
+    ];
+
+    /// The second and third parameter of [`super::Sheen`] for the scheme; the half vector has a model of its own.
+    pub fn params(self) -> [f32; 2] {
         match self {
-            SheenSampling::Proposal => 0.1,
-            SheenSampling::Uniform => 1.0,
+            SheenSampling::Proposal => [0.1, 0.0],
+            SheenSampling::Uniform => [1.0, 0.0],
+            SheenSampling::Cosine | SheenSampling::Normals => [0.0, 1.0],
         }
+    }
+}
+
+impl FromStr for SheenSampling {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == text);
+        let unknown = || format!("unknown sampling \"{text}\"; choose \"ltc\", \"uniform\", \"cosine\" or \"normals\"");
+        found.map(|&(_, scheme)| scheme).ok_or_else(unknown)
+    }
+}
+
+impl fmt::Display for SheenSampling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(Self::ALL.iter().find(|(_, scheme)| scheme == self).map_or("", |(name, _)| name))
     }
 }
 
@@ -70,12 +102,14 @@ pub struct Azimuth {
 }
 
 impl Proposal {
-    /// The sampler of a roughness.
+    /// The sampler of a roughness; `plain` 1 leaves the cosine untransformed.
     #[inline(always)]
-    pub fn new(term: Shadowing, soft: bool, r: f32, uniform_share: f32) -> Self {
+    pub fn new(term: Shadowing, soft: bool, r: f32, uniform_share: f32, plain: f32) -> Self {
         let ProposalFit { log_a, b } = proposal_fit(term, soft);
         let y = r.max(0.06).sqrt();
-        Proposal { log_a: collapse(log_a, y), b: collapse(b, y), uniform_share }
+        let ([a0, a1, a2], [b0, b1, b2]) = (collapse(log_a, y), collapse(b, y));
+        let keep = 1.0 - plain;
+        Proposal { log_a: [keep * a0, keep * a1, keep * a2], b: [keep * b0, keep * b1, keep * b2], uniform_share }
     }
 
     /// The parameters for a viewer.

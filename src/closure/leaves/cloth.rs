@@ -3,7 +3,7 @@
 use super::{Arguments, Cover, Leaf, LeafContext, Part, variants};
 use crate::closure::flatten::rule_of;
 use crate::closure::kinds::Kind;
-use crate::closure::settings::{Layering, Settings, Shadowing};
+use crate::closure::settings::{Layering, Settings, Shadowing, SheenSampling};
 use crate::closure::surfaces::{NONE, Request, Surfaces};
 use crate::closure::tree::{Floats, Ints};
 
@@ -35,24 +35,32 @@ pub(super) fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &
     let (tree, settings) = (context.tree, context.settings);
     let (shadowing, softening, layering) =
         (arguments.keyword("shadowing"), arguments.keyword("softening"), arguments.keyword("layering"));
+    let sampling = arguments.keyword("sampling");
     let code = |lane| {
         let term =
             shadowing.map_or(settings.shadowing, |c| arguments.text(c, lane).parse().unwrap_or(settings.shadowing));
         let soft = softening.map_or(settings.softening, |c| tree.int(c, lane) != 0);
         let term = Shadowing::ALL.iter().position(|(_, t)| *t == term).unwrap_or(0) as u32;
-        1 + rule_code(rule_at(arguments, layering, lane, settings)) + 3 * (term + 3 * u32::from(soft))
+        let scheme = sampling
+            .map_or(settings.sheen_sampling, |c| arguments.text(c, lane).parse().unwrap_or(settings.sheen_sampling));
+        let scheme = SheenSampling::ALL.iter().position(|(_, s)| *s == scheme).unwrap_or(0) as u32;
+        let rule = rule_code(rule_at(arguments, layering, lane, settings));
+        1 + rule + 3 * (term + 3 * (u32::from(soft) + 2 * scheme))
     };
     let tint = arguments.triple(first + 1);
-    let share = Floats::Uniform(settings.sheen_sampling.uniform_share());
-    let params = [arguments.float(first + 2), share];
     let frame = surfaces.frame(tree, arguments.triple(first), None, &context.seen);
     let mut leaf = Leaf { tint: Some(tint), ..Leaf::default() };
     if first == 1 {
         leaf.base = arguments.closure(0);
     }
-    for (code, gate) in variants(surfaces, &[shadowing, softening, layering], code, false) {
+    for (code, gate) in variants(surfaces, &[shadowing, softening, layering, sampling], code, false) {
         let code = code - 1;
-        let kind = Kind::Sheen(Shadowing::ALL[(code / 3 % 3) as usize].1, code / 9 == 1);
+        let (term, soft) = (Shadowing::ALL[(code / 3 % 3) as usize].1, code / 9 % 2 == 1);
+        let scheme = SheenSampling::ALL[(code / 18) as usize].1;
+        let kind =
+            if scheme == SheenSampling::Normals { Kind::SheenByNormals(term, soft) } else { Kind::Sheen(term, soft) };
+        let [share, plain] = scheme.params().map(Floats::Uniform);
+        let params = [arguments.float(first + 2), share, plain];
         let request = Request { kind, closure: arguments.spec.name, frame, params: &params, eta: None, gate };
         let surface = surfaces.push(tree, request);
         let made = surfaces.list[surface as usize];

@@ -112,7 +112,7 @@ impl Arguments<'_> {
     }
 }
 
-/// The codes that occur in a batch, each with the gate of its lanes; code 0 means no surface.
+/// The codes that occur in a batch, below 128, each with the gate of its lanes; code 0 means no surface.
 fn variants(
     surfaces: &mut Surfaces,
     columns: &[Option<Ints>],
@@ -121,13 +121,13 @@ fn variants(
 ) -> Vec<(u32, u32)> {
     let uniform = !floats_vary && columns.iter().all(|c| !matches!(c, Some(Ints::Varying(_))));
     let lanes = if uniform { surfaces.lanes.min(1) } else { surfaces.lanes };
-    let mut seen = (0..lanes).fold(0u32, |seen, lane| seen | 1 << code(lane));
+    let mut seen = (0..lanes).fold(0u128, |seen, lane| seen | 1 << code(lane));
     if seen.count_ones() == 1 {
         let only = seen.trailing_zeros();
         return if only == 0 { Vec::new() } else { vec![(only, NONE)] };
     }
     seen &= !1;
-    let codes = (1..32).filter(|c| seen >> c & 1 == 1);
+    let codes = (1..128).filter(|c| seen >> c & 1 == 1);
     codes.map(|c| (c, surfaces.push_column(|lane| if code(lane) == c { 1.0 } else { 0.0 }))).collect()
 }
 

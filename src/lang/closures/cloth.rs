@@ -14,6 +14,11 @@ const SHADOWING: ParamSpec = choice(
     &["exact", "published", "ashikhmin"],
     "shadowing term: \"exact\" (default), \"published\" (fit of the paper) or \"ashikhmin\" (real-time visibility)",
 );
+const SAMPLING: ParamSpec = choice(
+    "sampling",
+    &["ltc", "uniform", "cosine", "normals"],
+    "how directions are drawn: \"ltc\" (default, a transformed cosine), \"uniform\", \"cosine\" or \"normals\" (half vector)",
+);
 const SOFTENING: ParamSpec =
     param("softening", ParamKind::Int, "1 (default) softens the terminator by eq. 4, 0 does not").tried(&[1.0, 0.0]);
 const MODE: ParamSpec = param("mode", ParamKind::Int, "0: this model (the default); other values are not run");
@@ -47,7 +52,7 @@ pub(super) fn specs() -> Vec<ClosureSpec> {
             "sheen",
             Model::Sheen,
             &[param("base", Closure, "what lies under the sheen"), NORMAL, sheen_tint, SHEEN_ROUGHNESS],
-            &[SHADOWING, SOFTENING, LAYERING],
+            &[SHADOWING, SOFTENING, LAYERING, SAMPLING],
             "cloth sheen laid over any closure (Estevez and Kulla 2017)",
         )
         .without(SHEEN_WAIVERS),
@@ -55,7 +60,7 @@ pub(super) fn specs() -> Vec<ClosureSpec> {
             "sheen_bsdf",
             Model::SheenBsdf,
             &[NORMAL, param("albedo", Color, "color of the sheen"), SHEEN_ROUGHNESS],
-            &[SHADOWING, SOFTENING, MODE],
+            &[SHADOWING, SOFTENING, MODE, SAMPLING],
             "the sheen lobe alone, to be laid over a base by layer()",
         )
         .without(SHEEN_WAIVERS),
