@@ -9,7 +9,7 @@ macro_rules! with_source {
     ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
         use $crate::bsdf::sheen::shadowing::Shadowing;
         use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
-        use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar, velvet};
+        use $crate::bsdf::{ashikhmin_shirley, lafortune, lambert, microfacet::Microfacet, oren_nayar, phong, velvet, ward};
         use $crate::closure::kinds::Kind;
         macro_rules! run {
             ($model:ty) => {{
@@ -32,6 +32,12 @@ macro_rules! with_source {
             Kind::Translucent => run!(lambert::Translucent),
             Kind::OrenNayar => run!(oren_nayar::OrenNayar),
             Kind::Velvet => run!(velvet::Velvet),
+            Kind::Phong => run!(phong::Phong),
+            Kind::Ward { bounded: false } => run!(ward::Ward<false>),
+            Kind::Ward { bounded: true } => run!(ward::Ward<true>),
+            Kind::Highlight => run!(ashikhmin_shirley::Highlight),
+            Kind::UnderHighlight => run!(ashikhmin_shirley::Under),
+            Kind::Lafortune => run!(lafortune::Lafortune),
             Kind::Sheen(Shadowing::Exact, true) => run!(Sheen<EXACT, true>),
             Kind::Sheen(Shadowing::Exact, false) => run!(Sheen<EXACT, false>),
             Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
@@ -58,6 +64,19 @@ pub enum Kind {
     OrenNayar,
     /// Ashikhmin's velvet.
     Velvet,
+    /// Phong's highlight.
+    Phong,
+    /// Ward's highlight.
+    Ward {
+        /// The form of bounded energy.
+        bounded: bool,
+    },
+    /// The highlight of Ashikhmin and Shirley.
+    Highlight,
+    /// The diffuse light under it.
+    UnderHighlight,
+    /// A generalised cosine lobe.
+    Lafortune,
     /// Sheen with its shadowing term, softened or not.
     Sheen(Shadowing, bool),
     /// Rough boundary.
@@ -87,7 +106,7 @@ impl Kind {
             Kind::Reflection => event::DELTA_REFLECT,
             Kind::Refraction => event::DELTA_REFRACT,
             Kind::Transparent => event::STRAIGHT,
-            Kind::Microfacet { .. } => event::GLOSSY,
+            Kind::Microfacet { .. } | Kind::Phong | Kind::Ward { .. } | Kind::Highlight | Kind::Lafortune => event::GLOSSY,
             _ => event::DIFFUSE,
         }
     }

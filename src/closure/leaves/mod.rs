@@ -4,6 +4,7 @@
 //! that the boundary is smooth) splits a leaf into parts, each with a gate that is 1 in its lanes.
 
 mod cloth;
+mod historic;
 mod microfacet;
 
 use super::kinds::Kind;
@@ -157,6 +158,17 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::Transparent => single(Kind::Transparent, &[], None),
         Model::OrenNayar => single(Kind::OrenNayar, &[arguments.float(1)], None),
         Model::Velvet => single(Kind::Velvet, &[arguments.float(1)], None),
+        Model::Phong => single(Kind::Phong, &[arguments.float(1)], None),
+        Model::Subsurface => {
+            let frame = surfaces.frame(tree, [Floats::Uniform(0.0); 3], None, context.wo, context.ng);
+            let request =
+                Request { kind: Kind::Lambert, closure: spec.name, frame, params: &[], eta: None, gate: NONE };
+            let parts = vec![Part { surface: surfaces.push(tree, request), t: 0 }];
+            Leaf { parts, tint: Some(arguments.triple(3)), ..Leaf::default() }
+        }
+        Model::Ward => historic::ward(surfaces, context, &arguments),
+        Model::AshikhminShirley => historic::ashikhmin_shirley(surfaces, context, &arguments),
+        Model::Lafortune => historic::lafortune(surfaces, context, &arguments),
         Model::Reflection => single(Kind::Reflection, &[arguments.float(1)], Some(0)),
         Model::Refraction => single(Kind::Refraction, &[arguments.float(1)], Some(0)),
         Model::Microfacet => microfacet::leaf(surfaces, context, &arguments),

@@ -5,6 +5,7 @@
 
 mod classic;
 mod cloth;
+mod historic;
 
 /// The type of a closure parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,6 +101,16 @@ pub enum Model {
     Sheen,
     /// `sheen_bsdf(N, albedo, roughness)`
     SheenBsdf,
+    /// `phong(N, exponent)`
+    Phong,
+    /// `ward(N, T, ax, ay)`
+    Ward,
+    /// `ashikhmin_shirley(N, U, exponent_x, exponent_y, specular, diffuse)`
+    AshikhminShirley,
+    /// `lafortune(N, U, coefficients, exponent)`
+    Lafortune,
+    /// `subsurface(eta, g, mfp, albedo)`
+    Subsurface,
     /// `layer(top, base)`
     Layer,
     /// A closure of the host, numbered by the host; velour carries it in trees and gives it no meaning.
@@ -188,9 +199,6 @@ const ETA: ParamSpec = param("eta", ParamKind::Float, "index of refraction insid
 
 /// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
 pub const NOT_YET: &[&str] = &[
-    "phong",
-    "ward",
-    "subsurface",
     "oren_nayar_diffuse_bsdf",
     "burley_diffuse_bsdf",
     "dielectric_bsdf",
@@ -223,5 +231,6 @@ fn spec(
 fn standard_specs() -> Vec<ClosureSpec> {
     let mut specs = classic::specs();
     specs.extend(cloth::specs());
+    specs.extend(historic::specs());
     specs
 }
