@@ -16,7 +16,9 @@
 
 pub mod ashikhmin_shirley;
 pub mod bivariate;
+pub mod burley;
 pub mod cosine_power;
+pub mod eon;
 pub mod fresnel;
 pub mod lafortune;
 pub mod lambert;

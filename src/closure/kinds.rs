@@ -8,8 +8,8 @@ use crate::bsdf::sheen::shadowing::Shadowing;
 macro_rules! with_source {
     ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
         use $crate::bsdf::sheen::shadowing::Shadowing;
-        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
-        use $crate::bsdf::{ashikhmin_shirley, lafortune, lambert, microfacet::Microfacet, oren_nayar, phong, velvet, ward};
+        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, fibers::Fibers};
+        use $crate::bsdf::{ashikhmin_shirley, burley, eon, lafortune, lambert, microfacet::Microfacet, oren_nayar, phong, velvet, ward};
         use $crate::closure::kinds::Kind;
         macro_rules! run {
             ($model:ty) => {{
@@ -32,6 +32,9 @@ macro_rules! with_source {
             Kind::Translucent => run!(lambert::Translucent),
             Kind::OrenNayar => run!(oren_nayar::OrenNayar),
             Kind::Velvet => run!(velvet::Velvet),
+            Kind::Burley => run!(burley::Burley),
+            Kind::Eon => run!(eon::Eon),
+            Kind::Fibers => run!(Fibers),
             Kind::Phong => run!(phong::Phong),
             Kind::Ward { bounded: false } => run!(ward::Ward<false>),
             Kind::Ward { bounded: true } => run!(ward::Ward<true>),
@@ -64,6 +67,12 @@ pub enum Kind {
     OrenNayar,
     /// Ashikhmin's velvet.
     Velvet,
+    /// Burley's diffuse reflection.
+    Burley,
+    /// Rough diffuse reflection that loses no light.
+    Eon,
+    /// Sheen of a layer of fibers.
+    Fibers,
     /// Phong's highlight.
     Phong,
     /// Ward's highlight.

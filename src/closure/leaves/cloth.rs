@@ -11,6 +11,9 @@ fn rule_at(arguments: &Arguments, column: Option<Ints>, lane: usize, settings: S
     column.map_or(settings.layering, |c| rule_of(arguments.text(c, lane), settings.layering))
 }
 
+/// The code of the sheen of fibers, after those of three shadowing terms, softened or not.
+const FIBERS: u32 = 6;
+
 fn rule_code(rule: Layering) -> u32 {
     Layering::ALL.iter().position(|(_, r)| *r == rule).unwrap_or(0) as u32
 }
@@ -35,12 +38,15 @@ pub(super) fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &
     let (tree, settings) = (context.tree, context.settings);
     let (shadowing, softening, layering) =
         (arguments.keyword("shadowing"), arguments.keyword("softening"), arguments.keyword("layering"));
+    let mode = arguments.keyword("mode");
     let code = |lane| {
         let term =
             shadowing.map_or(settings.shadowing, |c| arguments.text(c, lane).parse().unwrap_or(settings.shadowing));
         let soft = softening.map_or(settings.softening, |c| tree.int(c, lane) != 0);
         let term = Shadowing::ALL.iter().position(|(_, t)| *t == term).unwrap_or(0) as u32;
-        1 + rule_code(rule_at(arguments, layering, lane, settings)) + 3 * (term + 3 * u32::from(soft))
+        let fibers = mode.is_some_and(|c| tree.int(c, lane) == 1);
+        let kind = if fibers { FIBERS } else { term + 3 * u32::from(soft) };
+        1 + rule_code(rule_at(arguments, layering, lane, settings)) + 3 * kind
     };
     let tint = arguments.triple(first + 1);
     let share = Floats::Uniform(settings.sheen_sampling.uniform_share());
@@ -50,10 +56,13 @@ pub(super) fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &
     if first == 1 {
         leaf.base = arguments.closure(0);
     }
-    for (code, gate) in variants(surfaces, &[shadowing, softening, layering], code, false) {
+    for (code, gate) in variants(surfaces, &[shadowing, softening, layering, mode], code, false) {
         let code = code - 1;
-        let kind = Kind::Sheen(Shadowing::ALL[(code / 3 % 3) as usize].1, code / 9 == 1);
-        let request = Request { kind, closure: arguments.spec.name, frame, params: &params, eta: None, gate };
+        let (kind, params) = match code / 3 {
+            FIBERS => (Kind::Fibers, &params[..1]),
+            kind => (Kind::Sheen(Shadowing::ALL[(kind % 3) as usize].1, kind / 3 == 1), &params[..]),
+        };
+        let request = Request { kind, closure: arguments.spec.name, frame, params, eta: None, gate };
         let surface = surfaces.push(tree, request);
         let made = surfaces.list[surface as usize];
         let t = match tint {

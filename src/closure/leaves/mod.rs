@@ -5,6 +5,7 @@
 
 mod cloth;
 mod historic;
+mod materialx;
 mod microfacet;
 
 use super::kinds::Kind;
@@ -141,16 +142,20 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         keywords: &tree.keywords[first_keyword as usize..(first_keyword + keyword_count) as usize],
         spec,
     };
+    let tint = |index: usize| matches!(arguments.params.get(index), Some(Param::Triple(_))).then(|| arguments.triple(index));
     let mut single = |kind, params: &[Floats], eta| {
         let frame = match kind {
             Kind::Transparent => NONE,
             _ => surfaces.frame(tree, arguments.triple(0), None, context.wo, context.ng),
         };
         let request = Request { kind, closure: spec.name, frame, params, eta, gate: NONE };
-        Leaf { parts: vec![Part { surface: surfaces.push(tree, request), t: 0 }], ..Leaf::default() }
+        let parts = vec![Part { surface: surfaces.push(tree, request), t: 0 }];
+        // The color of a diffuse closure, where it has one, follows its normal.
+        let colored = matches!(kind, Kind::Lambert | Kind::Translucent | Kind::Burley);
+        Leaf { parts, tint: if colored { tint(1) } else { None }, ..Leaf::default() }
     };
     match spec.model {
-        Model::Emission | Model::Background => Leaf { emits: true, ..Leaf::default() },
+        Model::Emission | Model::Background => Leaf { emits: true, tint: tint(0), ..Leaf::default() },
         Model::Holdout => Leaf { hole: true, ..Leaf::default() },
         Model::Debug | Model::Host(_) => Leaf::default(),
         Model::Diffuse => single(Kind::Lambert, &[], None),
@@ -158,6 +163,8 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::Transparent => single(Kind::Transparent, &[], None),
         Model::OrenNayar => single(Kind::OrenNayar, &[arguments.float(1)], None),
         Model::Velvet => single(Kind::Velvet, &[arguments.float(1)], None),
+        Model::OrenNayarDiffuse => materialx::oren_nayar(surfaces, context, &arguments),
+        Model::BurleyDiffuse => single(Kind::Burley, &[arguments.float(2)], None),
         Model::Phong => single(Kind::Phong, &[arguments.float(1)], None),
         Model::Subsurface => {
             let frame = surfaces.frame(tree, [Floats::Uniform(0.0); 3], None, context.wo, context.ng);
