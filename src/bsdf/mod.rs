@@ -14,14 +14,22 @@
 //! is a weight of the lobe, instead of three equal floats that the lane loops would multiply and keep. A model whose color
 //! depends on the directions (a conductor) gives it apart, in [`Scatter::color_from`], which the others never run.
 
+pub mod ashikhmin_shirley;
+pub mod bivariate;
+pub mod burley;
+pub mod cosine_power;
+pub mod eon;
 pub mod fresnel;
+pub mod lafortune;
 pub mod lambert;
 pub mod microfacet;
 pub mod oren_nayar;
+pub mod phong;
 pub mod power;
 pub mod sheen;
 pub mod specular;
 pub mod velvet;
+pub mod ward;
 
 use glam::Vec3;
 
@@ -128,6 +136,19 @@ pub trait Scatter: Copy {
 #[inline(always)]
 pub(crate) fn select(condition: bool, yes: f32, no: f32) -> f32 {
     if condition { yes } else { no }
+}
+
+/// A parameter limited to its domain; what is not a number becomes the lower end, which `clamp` would let through.
+#[inline(always)]
+pub(crate) fn limited(value: f32, least: f32, most: f32) -> f32 {
+    value.max(least).min(most)
+}
+
+/// A sampled direction, or none when it lies below the horizon: kept, it would count for a transmitting lobe beside this
+/// one, which could have found it with another density.
+#[inline(always)]
+pub(crate) fn above_horizon(w: Vec3) -> Vec3 {
+    w * select(w.z > 0.0, 1.0, 0.0)
 }
 
 /// Positive nodes and weights of the 8-point Gauss-Legendre rule on -1..1, exact to f32.

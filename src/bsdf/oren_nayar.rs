@@ -33,7 +33,7 @@ impl OrenNayar {
     /// Source: own integration. Domain: 0..1. Gives: 0..0.5, falling. Error: below 1e-4 (the arc cosine is
     /// Abramowitz and Stegun 4.4.45, absolute error 7e-5).
     #[inline(always)]
-    fn gain(cos: f32) -> f32 {
+    pub(super) fn gain(cos: f32) -> f32 {
         let c = cos.clamp(0.0, 1.0);
         let s2 = (1.0 - c) * (1.0 + c);
         let s = s2.sqrt();

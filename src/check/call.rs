@@ -121,10 +121,7 @@ impl Checker<'_> {
             return;
         }
         if crate::lang::closures::NOT_YET.contains(&name.name.as_str()) {
-            let diagnostic =
-                Diagnostic::error("E0412", name.span, format!("velour does not render `{}` yet", name.name));
-            let known: Vec<&str> = self.closures.specs.iter().map(|spec| spec.name).collect();
-            self.report(diagnostic.help(format!("its closures are {}", known.join(", "))));
+            self.report(self.not_rendered(name));
             return;
         }
         let diagnostic = Diagnostic::error("E0405", name.span, format!("there is no function `{}`", name.name));
@@ -133,6 +130,19 @@ impl Checker<'_> {
         self.closures.specs.iter().for_each(|spec| known.push(spec.name));
         let help = nearest(&name.name, known.into_iter()).map(|near| format!("did you mean `{near}`?"));
         self.report(diagnostic.help(help.unwrap_or_else(|| "`velour info` lists functions and closures".to_owned())));
+    }
+
+    /// The message for a closure without a scattering model.
+    fn not_rendered(&self, name: &Ident) -> Diagnostic {
+        if name.name.ends_with("_vdf") {
+            let message = format!("`{}` fills a volume, and velour renders surfaces only", name.name);
+            return Diagnostic::error("E0412", name.span, message).help(
+                "for a cloudy body use `subsurface_bssrdf(N, albedo, radius, anisotropy)`, for a clear one `transparent_bsdf()` times its color",
+            );
+        }
+        let message = format!("velour does not render `{}` yet", name.name);
+        let known: Vec<&str> = self.closures.specs.iter().map(|spec| spec.name).collect();
+        Diagnostic::error("E0412", name.span, message).help(format!("its closures are {}", known.join(", ")))
     }
 
     /// The candidate that fits best, or nothing; an undecidable tie is reported.
@@ -300,12 +310,14 @@ impl Checker<'_> {
                 let choices = spec.keywords[at].choices.join("\", \"");
                 self.report(Diagnostic::error("E0411", value.span, message).help(format!("choose \"{choices}\"")));
             }
-            if let (Model::SheenBsdf, "mode", ExprKind::Int(mode @ (..=-1 | 1..))) =
+            if let (Model::SheenBsdf, "mode", ExprKind::Int(mode @ (..=-1 | 2..))) =
                 (spec.model, word.as_str(), &value.kind)
             {
-                let message = format!("velour does not run `{}` with \"mode\" {mode} yet", spec.name);
+                let message = format!("`{}` has no \"mode\" {mode}", spec.name);
                 let diagnostic = Diagnostic::error("E0412", value.span, message);
-                self.report(diagnostic.help("mode 0 is the model velour runs, and the default"));
+                self.report(diagnostic.help(
+                    "0 is the sheen of Estevez and Kulla, and the default; 1 that of Zeltner, Burley and Chiang",
+                ));
             }
             let value = self.convert(value, &param_type(spec.keywords[at].kind));
             keywords.push((at as u32, value));

@@ -247,6 +247,7 @@ fn place(
     let n = tree.lanes;
     let mut fits = true;
     if leaf.emits || leaf.hole {
+        let weight = leaf.tint.map_or(weight, |tint| lobes.sweep.times(tree, weight, tint));
         lobes.sweep.emitters.push((weight, layer, leaf.hole, name.1));
     }
     fits &= lobes.sweep.send(n, leaf.top, layer, weight);

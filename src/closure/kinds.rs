@@ -8,9 +8,8 @@ use crate::bsdf::sheen::shadowing::Shadowing;
 macro_rules! with_source {
     ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
         use $crate::bsdf::sheen::shadowing::Shadowing;
-        use $crate::bsdf::sheen::normals::ByNormals;
-        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen};
-        use $crate::bsdf::{lambert, microfacet::Microfacet, oren_nayar, velvet};
+        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, fibers::Fibers, normals::ByNormals};
+        use $crate::bsdf::{ashikhmin_shirley, burley, eon, lafortune, lambert, microfacet::Microfacet, oren_nayar, phong, velvet, ward};
         use $crate::closure::kinds::Kind;
         macro_rules! run {
             ($model:ty) => {{
@@ -33,6 +32,15 @@ macro_rules! with_source {
             Kind::Translucent => run!(lambert::Translucent),
             Kind::OrenNayar => run!(oren_nayar::OrenNayar),
             Kind::Velvet => run!(velvet::Velvet),
+            Kind::Burley => run!(burley::Burley),
+            Kind::Eon => run!(eon::Eon),
+            Kind::Fibers => run!(Fibers),
+            Kind::Phong => run!(phong::Phong),
+            Kind::Ward { bounded: false } => run!(ward::Ward<false>),
+            Kind::Ward { bounded: true } => run!(ward::Ward<true>),
+            Kind::Highlight => run!(ashikhmin_shirley::Highlight),
+            Kind::UnderHighlight => run!(ashikhmin_shirley::Under),
+            Kind::Lafortune => run!(lafortune::Lafortune),
             Kind::Sheen(Shadowing::Exact, true) => run!(Sheen<EXACT, true>),
             Kind::Sheen(Shadowing::Exact, false) => run!(Sheen<EXACT, false>),
             Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
@@ -64,6 +72,25 @@ pub enum Kind {
     OrenNayar,
     /// Ashikhmin's velvet.
     Velvet,
+    /// Burley's diffuse reflection.
+    Burley,
+    /// Rough diffuse reflection that loses no light.
+    Eon,
+    /// Sheen of a layer of fibers.
+    Fibers,
+    /// Phong's highlight.
+    Phong,
+    /// Ward's highlight.
+    Ward {
+        /// The form of bounded energy.
+        bounded: bool,
+    },
+    /// The highlight of Ashikhmin and Shirley.
+    Highlight,
+    /// The diffuse light under it.
+    UnderHighlight,
+    /// A generalised cosine lobe.
+    Lafortune,
     /// Sheen with its shadowing term, softened or not.
     Sheen(Shadowing, bool),
     /// The same, sampled by its half vector.
@@ -91,7 +118,7 @@ impl Kind {
 
     /// True for lobes that scatter light about evenly, whatever the directions.
     pub fn is_diffuse(self) -> bool {
-        matches!(self, Kind::Lambert | Kind::Translucent | Kind::OrenNayar)
+        matches!(self, Kind::Lambert | Kind::Translucent | Kind::OrenNayar | Kind::Burley | Kind::Eon)
     }
 
     /// What sampling it counts as.
@@ -100,7 +127,9 @@ impl Kind {
             Kind::Reflection => event::DELTA_REFLECT,
             Kind::Refraction => event::DELTA_REFRACT,
             Kind::Transparent => event::STRAIGHT,
-            Kind::Microfacet { .. } => event::GLOSSY,
+            Kind::Microfacet { .. } | Kind::Phong | Kind::Ward { .. } | Kind::Highlight | Kind::Lafortune => {
+                event::GLOSSY
+            }
             _ => event::DIFFUSE,
         }
     }

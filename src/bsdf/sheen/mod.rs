@@ -14,6 +14,7 @@
 
 pub mod albedo;
 pub mod charlie;
+pub mod fibers;
 pub mod fits;
 pub mod normals;
 pub mod reference;

@@ -11,6 +11,9 @@ fn rule_at(arguments: &Arguments, column: Option<Ints>, lane: usize, settings: S
     column.map_or(settings.layering, |c| rule_of(arguments.text(c, lane), settings.layering))
 }
 
+/// The code of the sheen of fibers, after those of three shadowing terms, softened or not, drawn in four ways.
+const FIBERS: u32 = 24;
+
 fn rule_code(rule: Layering) -> u32 {
     Layering::ALL.iter().position(|(_, r)| *r == rule).unwrap_or(0) as u32
 }
@@ -30,12 +33,24 @@ pub(super) fn layer(surfaces: &mut Surfaces, context: &LeafContext, arguments: &
     }
 }
 
+/// The kind that a code of [`sheen`] stands for, and how its directions are drawn.
+fn kind_of(code: u32) -> (Kind, SheenSampling) {
+    if code == FIBERS {
+        return (Kind::Fibers, SheenSampling::Proposal);
+    }
+    let (term, soft) = (Shadowing::ALL[(code % 3) as usize].1, code / 3 % 2 == 1);
+    match SheenSampling::ALL[(code / 6) as usize].1 {
+        SheenSampling::Normals => (Kind::SheenByNormals(term, soft), SheenSampling::Normals),
+        scheme => (Kind::Sheen(term, soft), scheme),
+    }
+}
+
 /// `sheen(base, N, tint, roughness)` with `first` 1, `sheen_bsdf(N, albedo, roughness)` with `first` 0.
 pub(super) fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &Arguments, first: usize) -> Leaf {
     let (tree, settings) = (context.tree, context.settings);
     let (shadowing, softening, layering) =
         (arguments.keyword("shadowing"), arguments.keyword("softening"), arguments.keyword("layering"));
-    let sampling = arguments.keyword("sampling");
+    let (sampling, mode) = (arguments.keyword("sampling"), arguments.keyword("mode"));
     let code = |lane| {
         let term =
             shadowing.map_or(settings.shadowing, |c| arguments.text(c, lane).parse().unwrap_or(settings.shadowing));
@@ -44,8 +59,9 @@ pub(super) fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &
         let scheme = sampling
             .map_or(settings.sheen_sampling, |c| arguments.text(c, lane).parse().unwrap_or(settings.sheen_sampling));
         let scheme = SheenSampling::ALL.iter().position(|(_, s)| *s == scheme).unwrap_or(0) as u32;
-        let rule = rule_code(rule_at(arguments, layering, lane, settings));
-        1 + rule + 3 * (term + 3 * (u32::from(soft) + 2 * scheme))
+        let fibers = mode.is_some_and(|c| tree.int(c, lane) == 1);
+        let kind = if fibers { FIBERS } else { term + 3 * (u32::from(soft) + 2 * scheme) };
+        1 + rule_code(rule_at(arguments, layering, lane, settings)) + 3 * kind
     };
     let tint = arguments.triple(first + 1);
     let frame = surfaces.frame(tree, arguments.triple(first), None, &context.seen);
@@ -53,15 +69,14 @@ pub(super) fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &
     if first == 1 {
         leaf.base = arguments.closure(0);
     }
-    for (code, gate) in variants(surfaces, &[shadowing, softening, layering, sampling], code, false) {
+    for (code, gate) in variants(surfaces, &[shadowing, softening, layering, sampling, mode], code, false) {
         let code = code - 1;
-        let (term, soft) = (Shadowing::ALL[(code / 3 % 3) as usize].1, code / 9 % 2 == 1);
-        let scheme = SheenSampling::ALL[(code / 18) as usize].1;
-        let kind =
-            if scheme == SheenSampling::Normals { Kind::SheenByNormals(term, soft) } else { Kind::Sheen(term, soft) };
+        let (kind, scheme) = kind_of(code / 3);
         let [share, plain] = scheme.params().map(Floats::Uniform);
         let params = [arguments.float(first + 2), share, plain];
-        let request = Request { kind, closure: arguments.spec.name, frame, params: &params, eta: None, gate };
+        let count = if kind == Kind::Fibers { 1 } else { 3 };
+        let params = &params[..count];
+        let request = Request { kind, closure: arguments.spec.name, frame, params, eta: None, gate };
         let surface = surfaces.push(tree, request);
         let made = surfaces.list[surface as usize];
         let t = match tint {

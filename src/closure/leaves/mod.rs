@@ -5,6 +5,8 @@
 
 mod cloth;
 mod coat;
+mod historic;
+mod materialx;
 mod microfacet;
 
 use super::kinds::Kind;
@@ -143,16 +145,21 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         keywords: &tree.keywords[first_keyword as usize..(first_keyword + keyword_count) as usize],
         spec,
     };
+    let tint =
+        |index: usize| matches!(arguments.params.get(index), Some(Param::Triple(_))).then(|| arguments.triple(index));
     let mut single = |kind, params: &[Floats], eta| {
         let frame = match kind {
             Kind::Transparent => NONE,
             _ => surfaces.frame(tree, arguments.triple(0), None, &context.seen),
         };
         let request = Request { kind, closure: spec.name, frame, params, eta, gate: NONE };
-        Leaf { parts: vec![Part { surface: surfaces.push(tree, request), t: 0 }], ..Leaf::default() }
+        let parts = vec![Part { surface: surfaces.push(tree, request), t: 0 }];
+        // The color of a diffuse closure, where it has one, follows its normal.
+        let colored = matches!(kind, Kind::Lambert | Kind::Translucent | Kind::Burley);
+        Leaf { parts, tint: if colored { tint(1) } else { None }, ..Leaf::default() }
     };
     match spec.model {
-        Model::Emission | Model::Background => Leaf { emits: true, ..Leaf::default() },
+        Model::Emission | Model::Background => Leaf { emits: true, tint: tint(0), ..Leaf::default() },
         Model::Holdout => Leaf { hole: true, ..Leaf::default() },
         Model::Debug | Model::Host(_) => Leaf::default(),
         Model::Diffuse => single(Kind::Lambert, &[], None),
@@ -160,6 +167,19 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::Transparent => single(Kind::Transparent, &[], None),
         Model::OrenNayar => single(Kind::OrenNayar, &[arguments.float(1)], None),
         Model::Velvet => single(Kind::Velvet, &[arguments.float(1)], None),
+        Model::OrenNayarDiffuse => materialx::oren_nayar(surfaces, context, &arguments),
+        Model::BurleyDiffuse => single(Kind::Burley, &[arguments.float(2)], None),
+        Model::Phong => single(Kind::Phong, &[arguments.float(1)], None),
+        Model::Subsurface => {
+            let frame = surfaces.frame(tree, [Floats::Uniform(0.0); 3], None, &context.seen);
+            let request =
+                Request { kind: Kind::Lambert, closure: spec.name, frame, params: &[], eta: None, gate: NONE };
+            let parts = vec![Part { surface: surfaces.push(tree, request), t: 0 }];
+            Leaf { parts, tint: Some(arguments.triple(3)), ..Leaf::default() }
+        }
+        Model::Ward => historic::ward(surfaces, context, &arguments),
+        Model::AshikhminShirley => historic::ashikhmin_shirley(surfaces, context, &arguments),
+        Model::Lafortune => historic::lafortune(surfaces, context, &arguments),
         Model::Reflection => single(Kind::Reflection, &[arguments.float(1)], Some(0)),
         Model::Refraction => single(Kind::Refraction, &[arguments.float(1)], Some(0)),
         Model::Microfacet => microfacet::leaf(surfaces, context, &arguments),

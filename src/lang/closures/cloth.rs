@@ -21,26 +21,37 @@ const SAMPLING: ParamSpec = choice(
 );
 const SOFTENING: ParamSpec =
     param("softening", ParamKind::Int, "1 (default) softens the terminator by eq. 4, 0 does not").tried(&[1.0, 0.0]);
-const MODE: ParamSpec = param("mode", ParamKind::Int, "0: this model (the default); other values are not run");
+const MODE: ParamSpec = param(
+    "mode",
+    ParamKind::Int,
+    "0: Estevez and Kulla 2017 (the default); 1: a layer of fibers, Zeltner, Burley and Chiang 2022",
+)
+.tried(&[0.0, 1.0]);
 
 /// Promises that the lobe does not make in some of its variants; the figures are maxima over r 0.06..1 and cosines from 1e-4.
-const SHEEN_WAIVERS: &[Waiver] = &[
-    Waiver {
-        claim: Claim::Reciprocity,
-        only: Some(("softening", "1")),
-        why: "eq. 4 softens the side of the light only",
-    },
-    Waiver {
-        claim: Claim::Energy,
-        only: Some(("shadowing", "published")),
-        why: "the published fit of Lambda falls below the true one at small roughness",
-    },
-    Waiver {
-        claim: Claim::Energy,
-        only: Some(("shadowing", "ashikhmin")),
-        why: "the real-time visibility does not belong to D: albedo up to 1.7 below r = 0.21",
-    },
-];
+const SHEEN_WAIVERS: &[Waiver] = &[SOFTENED, PUBLISHED, ASHIKHMIN];
+const SHEEN_BSDF_WAIVERS: &[Waiver] = &[SOFTENED, PUBLISHED, ASHIKHMIN, FIBERS];
+
+const SOFTENED: Waiver = Waiver {
+    claim: Claim::Reciprocity,
+    only: Some(("softening", "1")),
+    why: "eq. 4 softens the side of the light only",
+};
+const PUBLISHED: Waiver = Waiver {
+    claim: Claim::Energy,
+    only: Some(("shadowing", "published")),
+    why: "the published fit of Lambda falls below the true one at small roughness",
+};
+const ASHIKHMIN: Waiver = Waiver {
+    claim: Claim::Energy,
+    only: Some(("shadowing", "ashikhmin")),
+    why: "the real-time visibility does not belong to D: albedo up to 1.7 below r = 0.21",
+};
+const FIBERS: Waiver = Waiver {
+    claim: Claim::Reciprocity,
+    only: Some(("mode", "1")),
+    why: "the shape and height of the lobe follow the viewer alone",
+};
 
 /// Sheen, and the layering it needs.
 pub(super) fn specs() -> Vec<ClosureSpec> {
@@ -63,7 +74,7 @@ pub(super) fn specs() -> Vec<ClosureSpec> {
             &[SHADOWING, SOFTENING, MODE, SAMPLING],
             "the sheen lobe alone, to be laid over a base by layer()",
         )
-        .without(SHEEN_WAIVERS),
+        .without(SHEEN_BSDF_WAIVERS),
         spec(
             "layer",
             Model::Layer,

@@ -5,6 +5,8 @@
 
 mod classic;
 mod cloth;
+mod historic;
+mod materialx;
 
 /// The type of a closure parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,19 +74,19 @@ pub struct Waiver {
 /// Which built-in scattering model a closure stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Model {
-    /// `emission()`
+    /// `emission()`, `uniform_edf(emittance)`
     Emission,
     /// `background()`
     Background,
-    /// `diffuse(N)`
+    /// `diffuse(N)`, `subsurface_bssrdf(N, albedo, radius, anisotropy)`
     Diffuse,
     /// `oren_nayar(N, sigma)`
     OrenNayar,
     /// `ashikhmin_velvet(N, sigma)`
     Velvet,
-    /// `translucent(N)`
+    /// `translucent(N)`, `translucent_bsdf(N, albedo)`
     Translucent,
-    /// `transparent()`
+    /// `transparent()`, `transparent_bsdf()`
     Transparent,
     /// `reflection(N, eta)`
     Reflection,
@@ -100,6 +102,20 @@ pub enum Model {
     Sheen,
     /// `sheen_bsdf(N, albedo, roughness)`
     SheenBsdf,
+    /// `oren_nayar_diffuse_bsdf(N, albedo, roughness)`
+    OrenNayarDiffuse,
+    /// `burley_diffuse_bsdf(N, albedo, roughness)`
+    BurleyDiffuse,
+    /// `phong(N, exponent)`
+    Phong,
+    /// `ward(N, T, ax, ay)`
+    Ward,
+    /// `ashikhmin_shirley(N, U, exponent_x, exponent_y, specular, diffuse)`
+    AshikhminShirley,
+    /// `lafortune(N, U, coefficients, exponent)`
+    Lafortune,
+    /// `subsurface(eta, g, mfp, albedo)`
+    Subsurface,
     /// `layer(top, base)`
     Layer,
     /// `coat(base, N, roughness, eta, absorption, thickness)`
@@ -190,19 +206,10 @@ const ETA: ParamSpec = param("eta", ParamKind::Float, "index of refraction insid
 
 /// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
 pub const NOT_YET: &[&str] = &[
-    "phong",
-    "ward",
-    "subsurface",
-    "oren_nayar_diffuse_bsdf",
-    "burley_diffuse_bsdf",
     "dielectric_bsdf",
     "conductor_bsdf",
     "generalized_schlick_bsdf",
-    "translucent_bsdf",
-    "transparent_bsdf",
-    "subsurface_bssrdf",
     "chiang_hair_bsdf",
-    "uniform_edf",
     "anisotropic_vdf",
     "medium_vdf",
 ];
@@ -225,5 +232,7 @@ fn spec(
 fn standard_specs() -> Vec<ClosureSpec> {
     let mut specs = classic::specs();
     specs.extend(cloth::specs());
+    specs.extend(historic::specs());
+    specs.extend(materialx::specs());
     specs
 }
