@@ -462,7 +462,8 @@ fn pick(lobes: &mut Lobes) {
         }
     }
     for value in &mut total {
-        *value = if *value > 0.0 { 1.0 / *value } else { 0.0 };
+        // The inverse of a smaller sum would be infinite.
+        *value = if *value >= f32::MIN_POSITIVE { 1.0 / *value } else { 0.0 };
     }
     for index in 0..lobes.lobes.len() {
         let picks = &mut lobes.picks[index * n..(index + 1) * n];

@@ -119,6 +119,11 @@ impl Lobes {
         super::flatten::flatten(self, table, tree, wo, ng);
     }
 
+    /// The directions to the viewer, world, as [`Lobes::flatten`] got them.
+    pub fn viewer(&self) -> &Column3 {
+        &self.wo
+    }
+
     /// Radiance toward the viewer, of `emission()` and `background()`, seen through the layers over them.
     pub fn emission(&self) -> &Column3 {
         &self.emission

@@ -5,6 +5,7 @@ mod fits;
 mod golden;
 mod layering;
 mod samplers;
+mod stability;
 mod stress;
 mod trees;
 

@@ -1,11 +1,10 @@
-//! A million directions, a third near the mirror, a third near grazing, against f64; and edge inputs.
+//! A million directions, a third near the mirror, a third near grazing, against f64.
 
 use crate::SEED;
 use glam::Vec3;
 use velour::bsdf::microfacet::Microfacet;
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::reference::{self, Model};
-use velour::bsdf::sheen::shadowing::{Exact, Published, soften};
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
 use velour::bsdf::velvet::Velvet;
 use velour::bsdf::{Scatter, Side, params};
@@ -107,30 +106,6 @@ fn every_model_is_finite_everywhere() {
         check::<Sheen<EXACT, true>>([-1.0, 0.1, 0.0, 0.0], &mut random, k);
         check::<Sheen<PUBLISHED, true>>([-1.0, 1.0, 0.0, 0.0], &mut random, k);
     }
-}
-
-#[test]
-fn edge_inputs_give_what_they_should() {
-    // A mirror configuration whose half vector rounds to a cosine above 1.
-    let n = Vec3::new(-0.403_824_8, 0.816_492_5, 0.412_632_56);
-    let v = Vec3::new(-0.782_364_3, -0.409_227_67, 0.469_509_24);
-    let frame = velour::math::frame::Frame::from_normal(n);
-    let wo = frame.to_local(v);
-    let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-    assert!(charlie::distribution(charlie::sin2_half(wo, wi), 1.0 / 0.15) < 1e-12);
-    // Close to the normal D keeps its digits.
-    let wo = Vec3::new(0.001, 0.0, 1.0).normalize();
-    let sine = charlie::sin2_half(wo, wo);
-    assert!((charlie::distribution(sine, 4.0) / 9.549_29e-13 - 1.0).abs() < 1e-4);
-    assert!(charlie::distribution(charlie::sin2_half(Vec3::X, -Vec3::X), 4.0) < 1e-30);
-    assert_eq!(charlie::clamp_roughness(2.0), 1.0);
-    assert_eq!(charlie::clamp_roughness(0.0), 0.01);
-    assert!((Published::new(0.25).lambda(1.000_000_1) - 1.0149e-8).abs() < 1e-11);
-    assert!(Exact::new(4.0).lambda(0.0).is_finite() && soften(Exact::new(4.0).lambda(0.0), 0.0).is_finite());
-    let below = Vec3::new(0.8, 0.0, -0.6);
-    assert_eq!(Sheen::<PUBLISHED, true>::prepare(params([0.25, 0.1])).f(Vec3::Z, below), 0.0);
-    let grazing = Sheen::<ASHIKHMIN, false>::prepare(params([0.25, 0.1])).eval(Vec3::X, Vec3::X);
-    assert_eq!(grazing.f_cos, 0.0);
 }
 
 #[test]
