@@ -11,7 +11,8 @@ use super::kinds::with_source;
 use super::settings::Layering;
 use super::surfaces::{NONE, Surface, Surfaces};
 use crate::bsdf::GAUSS;
-use crate::bsdf::fresnel::dielectric;
+use crate::bsdf::specular::{reflection, refraction};
+use glam::Vec3;
 
 /// Which direction an albedo is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -285,11 +286,12 @@ pub fn surface_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &
             &fixed
         }
     };
-    if surface.kind.is_delta() {
+    if let Kind::Reflection(term) | Kind::Refraction(term) = surface.kind {
+        let meet = if matches!(surface.kind, Kind::Reflection(_)) { reflection } else { refraction };
         for (lane, value) in out.iter_mut().enumerate() {
-            let eta = surfaces.param(surface, 0, lane);
-            let reflected = dielectric(cos[lane], eta);
-            *value = if surface.kind == Kind::Reflection { reflected } else { 1.0 - reflected };
+            let c = cos[lane].abs().min(1.0);
+            let viewer = Vec3::new(((1.0 - c) * (1.0 + c)).sqrt(), 0.0, c);
+            *value = meet(viewer, term, surfaces.params(surface, lane)).part.max_element();
         }
         return;
     }

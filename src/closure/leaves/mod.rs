@@ -10,6 +10,7 @@ use super::kinds::Kind;
 use super::settings::{Layering, Settings};
 use super::surfaces::{NONE, Request, Surfaces};
 use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
+use crate::bsdf::fresnel::Term;
 use crate::lang::closures::{ClosureSpec, Model};
 use crate::lang::symbols::Symbol;
 use crate::math::columns::Column3;
@@ -45,6 +46,8 @@ pub struct Leaf {
     pub covers: Vec<Cover>,
     /// A color that its weight is multiplied with.
     pub tint: Option<[Floats; 3]>,
+    /// A color for each part in their order, in place of `tint`; empty for none.
+    pub tints: Vec<[Floats; 3]>,
     /// The tree on top, of `layer`.
     pub top: Option<NodeId>,
     /// What lies under it.
@@ -118,13 +121,13 @@ fn variants(
 ) -> Vec<(u32, u32)> {
     let uniform = !floats_vary && columns.iter().all(|c| !matches!(c, Some(Ints::Varying(_))));
     let lanes = if uniform { surfaces.lanes.min(1) } else { surfaces.lanes };
-    let mut seen = (0..lanes).fold(0u32, |seen, lane| seen | 1 << code(lane));
+    let mut seen = (0..lanes).fold(0u64, |seen, lane| seen | 1 << code(lane));
     if seen.count_ones() == 1 {
         let only = seen.trailing_zeros();
         return if only == 0 { Vec::new() } else { vec![(only, NONE)] };
     }
     seen &= !1;
-    let codes = (1..32).filter(|c| seen >> c & 1 == 1);
+    let codes = (1..64).filter(|c| seen >> c & 1 == 1);
     codes.map(|c| (c, surfaces.push_column(|lane| if code(lane) == c { 1.0 } else { 0.0 }))).collect()
 }
 
@@ -157,9 +160,12 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::Transparent => single(Kind::Transparent, &[], None),
         Model::OrenNayar => single(Kind::OrenNayar, &[arguments.float(1)], None),
         Model::Velvet => single(Kind::Velvet, &[arguments.float(1)], None),
-        Model::Reflection => single(Kind::Reflection, &[arguments.float(1)], Some(0)),
-        Model::Refraction => single(Kind::Refraction, &[arguments.float(1)], Some(0)),
-        Model::Microfacet => microfacet::leaf(surfaces, context, &arguments),
+        Model::Reflection => single(Kind::Reflection(Term::Dielectric), &[arguments.float(1)], Some(0)),
+        Model::Refraction => single(Kind::Refraction(Term::Dielectric), &[arguments.float(1)], Some(0)),
+        Model::Microfacet => microfacet::plain(surfaces, context, &arguments),
+        Model::DielectricBsdf => microfacet::dielectric(surfaces, context, &arguments),
+        Model::ConductorBsdf => microfacet::conductor(surfaces, context, &arguments),
+        Model::GeneralizedSchlickBsdf => microfacet::generalized_schlick(surfaces, context, &arguments),
         Model::Sheen => cloth::sheen(surfaces, context, &arguments, 1),
         Model::SheenBsdf => cloth::sheen(surfaces, context, &arguments, 0),
         Model::Layer => cloth::layer(surfaces, context, &arguments),
