@@ -5,7 +5,7 @@
 //! as its own top plus what that lets through of its base. The sum is clamped to 1. The albedo of each leaf is the
 //! one its model documents; transmitting lobes count too, as what they pass has left the base's light.
 
-use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes};
+use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes, top_albedo_lanes};
 use super::kinds::Kind;
 use super::kinds::with_source;
 use super::settings::Layering;
@@ -13,6 +13,7 @@ use super::surfaces::{NONE, Surface, Surfaces};
 use crate::bsdf::GAUSS;
 use crate::bsdf::specular::{reflection, refraction};
 use glam::Vec3;
+use std::borrow::Cow;
 
 /// Which direction an albedo is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,7 +214,7 @@ impl Layers {
                     here.fill(0.0);
                     for &(surface, t) in &self.leaves[first as usize..last as usize] {
                         let surface = &surfaces.list[surface as usize];
-                        surface_albedo(surfaces, surface, side, &mut self.scratch);
+                        covering_albedo(surfaces, surface, side, &mut self.scratch);
                         let t = surfaces.column(t);
                         for i in 0..n {
                             let there = surfaces.gate(surface, i) > 0.0;
@@ -261,12 +262,31 @@ fn column_or<'a>(store: &'a [f32], layer: u32, ones: &'a [f32]) -> &'a [f32] {
 fn top_albedo(layer: &Layer, surfaces: &Surfaces, side: Side, values: &[f32], out: &mut [f32]) {
     let n = surfaces.lanes;
     match layer.top {
-        Top::Surface(surface) => surface_albedo(surfaces, &surfaces.list[surface as usize], side, out),
+        Top::Surface(surface) => covering_albedo(surfaces, &surfaces.list[surface as usize], side, out),
         Top::Tree(step) => {
             for (o, v) in out.iter_mut().zip(&values[step as usize * n..(step as usize + 1) * n]) {
                 *o = v.clamp(0.0, 1.0);
             }
         }
+    }
+}
+
+/// The albedo of a surface that lies on top of something: [`surface_albedo`], from tables where that is an estimate.
+fn covering_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &mut [f32]) {
+    if !matches!(surface.kind, Kind::Microfacet { .. }) {
+        return surface_albedo(surfaces, surface, side, out);
+    }
+    let cos = cosines(surfaces, surface, side);
+    with_source!(surfaces, surface, |M, source| top_albedo_lanes::<M, _>(source, &cos, out));
+}
+
+/// The cosines of a direction to a surface's normal.
+fn cosines<'a>(surfaces: &'a Surfaces, surface: &Surface, side: Side) -> Cow<'a, [f32]> {
+    let frame = &surfaces.frames()[surface.frame as usize];
+    match side {
+        Side::View => Cow::Borrowed(&frame.wo.z),
+        Side::Light => Cow::Borrowed(&frame.wi.z),
+        Side::Fixed(value) => Cow::Owned(vec![value; surfaces.lanes]),
     }
 }
 
@@ -276,16 +296,7 @@ pub fn surface_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &
         out.fill(1.0);
         return;
     }
-    let frame = &surfaces.frames()[surface.frame as usize];
-    let fixed;
-    let cos: &[f32] = match side {
-        Side::View => &frame.wo.z,
-        Side::Light => &frame.wi.z,
-        Side::Fixed(value) => {
-            fixed = vec![value; surfaces.lanes];
-            &fixed
-        }
-    };
+    let cos = cosines(surfaces, surface, side);
     if let Kind::Reflection(term) | Kind::Refraction(term) = surface.kind {
         let meet = if matches!(surface.kind, Kind::Reflection(_)) { reflection } else { refraction };
         for (lane, value) in out.iter_mut().enumerate() {
@@ -295,5 +306,5 @@ pub fn surface_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &
         }
         return;
     }
-    with_source!(surfaces, surface, |M, source| albedo_lanes::<M, _>(source, cos, out));
+    with_source!(surfaces, surface, |M, source| albedo_lanes::<M, _>(source, &cos, out));
 }

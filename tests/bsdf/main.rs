@@ -3,6 +3,7 @@
 mod fits;
 mod golden;
 mod layering;
+mod microfacet;
 mod samplers;
 mod stress;
 mod trees;

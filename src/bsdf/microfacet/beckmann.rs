@@ -1,11 +1,13 @@
 //! Facets of Beckmann and Spizzichino.
 
+use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths, normal_of_slope};
 use crate::bsdf::power;
 use crate::math::elementary::exp;
 use crate::math::warp::turn;
 use glam::Vec3;
 use std::f32::consts::PI;
+use std::sync::OnceLock;
 
 /// Polynomial of k(a), fitted on a 0..10.
 const K: [f32; 11] = [
@@ -27,6 +29,11 @@ const K: [f32; 11] = [
 pub struct Beckmann(pub Widths);
 
 impl Distribution for Beckmann {
+    fn table() -> &'static FacetTable {
+        static TABLE: OnceLock<FacetTable> = OnceLock::new();
+        TABLE.get_or_init(FacetTable::build::<Beckmann>)
+    }
+
     #[inline(always)]
     fn new(widths: Widths) -> Self {
         Beckmann(widths)

@@ -1,5 +1,6 @@
 //! Facets of Blinn: a power of the cosine, with the Smith term that belongs to it.
 
+use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths};
 use crate::bsdf::power::{exp2, log2};
 use crate::bsdf::select;
@@ -7,6 +8,7 @@ use crate::math::elementary::expm1;
 use crate::math::warp::turn;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, LN_2, LOG2_E, PI};
+use std::sync::OnceLock;
 
 /// Blinn's distribution D = (s + 2) / (2 pi) cos^s of the width alpha, s = 2 / alpha² - 2.
 ///
@@ -42,6 +44,11 @@ fn log2_cos2(sin2: f32, cos2: f32) -> f32 {
 }
 
 impl Distribution for Blinn {
+    fn table() -> &'static FacetTable {
+        static TABLE: OnceLock<FacetTable> = OnceLock::new();
+        TABLE.get_or_init(FacetTable::build::<Blinn>)
+    }
+
     #[inline(always)]
     fn new(w: Widths) -> Self {
         let x = w.x * w.y;

@@ -1,15 +1,22 @@
 //! Facets of Trowbridge and Reitz (GGX), and their visible normals, which all distributions sample.
 
+use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths, normal_of_slope};
 use crate::math::warp::turn;
 use glam::Vec3;
 use std::f32::consts::PI;
+use std::sync::OnceLock;
 
 /// Trowbridge-Reitz, anisotropic.
 #[derive(Clone, Copy, Debug)]
 pub struct Ggx(pub Widths);
 
 impl Distribution for Ggx {
+    fn table() -> &'static FacetTable {
+        static TABLE: OnceLock<FacetTable> = OnceLock::new();
+        TABLE.get_or_init(FacetTable::build::<Ggx>)
+    }
+
     #[inline(always)]
     fn new(widths: Widths) -> Self {
         Ggx(widths)

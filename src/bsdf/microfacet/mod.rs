@@ -11,6 +11,7 @@
 //! Decision (2026-11-22): the shadowing term and the way of sampling are one parameter, because the three terms share the
 //! two Lambdas and the lane loop blends them, instead of types, of which there are fifteen already.
 
+pub mod albedo;
 pub mod beckmann;
 pub mod blinn;
 pub mod distribution;
@@ -210,5 +211,15 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         } else {
             select(self.fresnel.eta() > 0.0, part.clamp(0.02, 0.97), part.clamp(0.02, 1.0))
         }
+    }
+
+    /// From the distribution's table: of the reflecting half with the correlated Smith term, for the geometric mean of the widths.
+    /// Of the transmitting half it is [`Scatter::albedo`].
+    fn top_albedo(&self, cos: f32) -> f32 {
+        if REFRACT {
+            return self.albedo(cos);
+        }
+        let w = self.visible.0;
+        D::table().albedo(&self.fresnel, (w.x * w.y).sqrt(), cos)
     }
 }
