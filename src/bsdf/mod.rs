@@ -116,7 +116,12 @@ pub trait Scatter: Copy {
     }
     /// Directional albedo at this cosine (of its largest component), an estimate that each model documents.
     fn albedo(&self, cos: f32) -> f32;
-    /// Mean of the albedo over the hemisphere, weighted by the cosine.
+    /// The albedo at this cosine as exact as the model knows it: what a layer's top takes from its base.
+    #[inline(always)]
+    fn top_albedo(&self, cos: f32) -> f32 {
+        self.albedo(cos)
+    }
+    /// Mean of [`Scatter::top_albedo`] over the hemisphere, weighted by the cosine.
     ///
     /// Source: Gauss-Legendre of 8 nodes in the cube root of the cosine, exact for albedos of degree 10 in it.
     #[inline(always)]
@@ -125,7 +130,7 @@ pub trait Scatter: Copy {
         for (x, weight) in GAUSS {
             for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
                 let t2 = t * t;
-                sum += 3.0 * weight * t2 * t2 * t * self.albedo(t2 * t);
+                sum += 3.0 * weight * t2 * t2 * t * self.top_albedo(t2 * t);
             }
         }
         sum

@@ -319,6 +319,10 @@ impl Checker<'_> {
                     "0 is the sheen of Estevez and Kulla, and the default; 1 that of Zeltner, Burley and Chiang",
                 ));
             }
+            if let Some((_, what)) = spec.keywords[at].left_out.filter(|(nothing, _)| !is_literally(&value, *nothing)) {
+                let message = format!("velour does not model \"{word}\" of `{}`", spec.name);
+                self.report(Diagnostic::warning("W0506", token.span, message).help(format!("left out: {what}")));
+            }
             let value = self.convert(value, &param_type(spec.keywords[at].kind));
             keywords.push((at as u32, value));
         }
@@ -389,6 +393,15 @@ fn wrong_choice(param: &ParamSpec, value: &Expr) -> Option<String> {
     let ExprKind::String(text) = &value.kind else { return None };
     let known = param.choices.is_empty() || param.choices.contains(&text.as_str());
     (!known).then(|| format!("\"{text}\" is no {} that velour knows", param.name))
+}
+
+/// True for a literal of this value.
+fn is_literally(value: &Expr, wanted: f32) -> bool {
+    match value.kind {
+        ExprKind::Int(given) => given as f32 == wanted,
+        ExprKind::Float(given) => given == wanted,
+        _ => false,
+    }
 }
 
 /// The language's type of a closure parameter.

@@ -252,6 +252,14 @@ pub fn albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut 
     }
 }
 
+/// [`albedo_lanes`] of what lies on top of something: as exact as the model knows it.
+pub fn top_albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut [f32]) {
+    let (cos, source) = (&cos[..out.len()], source.narrow(out.len()));
+    for (i, value) in out.iter_mut().enumerate() {
+        *value = source.at(i).top_albedo(cos[i].abs().min(1.0));
+    }
+}
+
 /// The mean albedo of one model.
 pub fn average_lanes<M: Scatter, S: Source<M>>(source: S, out: &mut [f32]) {
     let source = source.narrow(out.len());

@@ -251,8 +251,9 @@ fn place(
         lobes.sweep.emitters.push((weight, layer, leaf.hole, name.1));
     }
     fits &= lobes.sweep.send(n, leaf.top, layer, weight);
-    for part in leaf.parts.iter() {
-        fits &= add_lobe(lobes, tree, part.surface, layer, weight, leaf.tint, name);
+    for (k, part) in leaf.parts.iter().enumerate() {
+        let tint = leaf.tints.get(k).copied().or(leaf.tint);
+        fits &= add_lobe(lobes, tree, part.surface, layer, weight, tint, name);
     }
     if leaf.base.is_none() {
         return fits;

@@ -1,6 +1,7 @@
 //! The kinds of lobes, and the one place that maps each to its model.
 
 use super::sampling::event;
+use crate::bsdf::fresnel::Term;
 use crate::bsdf::sheen::shadowing::Shadowing;
 
 /// Runs an expression with the type `$M` of a surface's model and a source `$source` of its constants.
@@ -8,9 +9,11 @@ use crate::bsdf::sheen::shadowing::Shadowing;
 macro_rules! with_source {
     ($surfaces:expr, $surface:expr, |$M:ident, $source:ident| $body:expr) => {{
         use $crate::bsdf::sheen::shadowing::Shadowing;
+        use $crate::bsdf::fresnel::{Conductor, Dielectric, Schlick, Term};
+        use $crate::bsdf::microfacet::{Beckmann, Blinn, Ggx, Microfacet};
         use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, fibers::Fibers, normals::ByNormals};
-        use $crate::bsdf::{ashikhmin_shirley, burley, eon, lafortune, lambert, microfacet::Microfacet, oren_nayar, phong, velvet, ward};
-        use $crate::closure::kinds::Kind;
+        use $crate::bsdf::{ashikhmin_shirley, burley, eon, lafortune, lambert, oren_nayar, phong, velvet, ward};
+        use $crate::closure::kinds::{Facets, Kind};
         macro_rules! run {
             ($model:ty) => {{
                 #[allow(unused)]
@@ -51,11 +54,24 @@ macro_rules! with_source {
             Kind::SheenByNormals(Shadowing::Published, true) => run!(ByNormals<PUBLISHED, true>),
             Kind::SheenByNormals(Shadowing::Published, false) => run!(ByNormals<PUBLISHED, false>),
             Kind::SheenByNormals(Shadowing::Ashikhmin, _) => run!(ByNormals<ASHIKHMIN, false>),
-            Kind::Microfacet { beckmann: false, refract: false } => run!(Microfacet<false, false>),
-            Kind::Microfacet { beckmann: false, refract: true } => run!(Microfacet<false, true>),
-            Kind::Microfacet { beckmann: true, refract: false } => run!(Microfacet<true, false>),
-            Kind::Microfacet { beckmann: true, refract: true } => run!(Microfacet<true, true>),
-            Kind::Reflection | Kind::Refraction | Kind::Transparent => {}
+            Kind::Microfacet { distribution, term, refract } => match (distribution, term, refract) {
+                (Facets::Ggx, Term::Dielectric, false) => run!(Microfacet<Ggx, Dielectric, false>),
+                (Facets::Ggx, Term::Dielectric, true) => run!(Microfacet<Ggx, Dielectric, true>),
+                (Facets::Ggx, Term::Schlick, false) => run!(Microfacet<Ggx, Schlick, false>),
+                (Facets::Ggx, Term::Schlick, true) => run!(Microfacet<Ggx, Schlick, true>),
+                (Facets::Ggx, Term::Conductor, _) => run!(Microfacet<Ggx, Conductor, false>),
+                (Facets::Beckmann, Term::Dielectric, false) => run!(Microfacet<Beckmann, Dielectric, false>),
+                (Facets::Beckmann, Term::Dielectric, true) => run!(Microfacet<Beckmann, Dielectric, true>),
+                (Facets::Beckmann, Term::Schlick, false) => run!(Microfacet<Beckmann, Schlick, false>),
+                (Facets::Beckmann, Term::Schlick, true) => run!(Microfacet<Beckmann, Schlick, true>),
+                (Facets::Beckmann, Term::Conductor, _) => run!(Microfacet<Beckmann, Conductor, false>),
+                (Facets::Blinn, Term::Dielectric, false) => run!(Microfacet<Blinn, Dielectric, false>),
+                (Facets::Blinn, Term::Dielectric, true) => run!(Microfacet<Blinn, Dielectric, true>),
+                (Facets::Blinn, Term::Schlick, false) => run!(Microfacet<Blinn, Schlick, false>),
+                (Facets::Blinn, Term::Schlick, true) => run!(Microfacet<Blinn, Schlick, true>),
+                (Facets::Blinn, Term::Conductor, _) => run!(Microfacet<Blinn, Conductor, false>),
+            },
+            Kind::Reflection(_) | Kind::Refraction(_) | Kind::Transparent => {}
         }
     }};
 }
@@ -97,23 +113,36 @@ pub enum Kind {
     SheenByNormals(Shadowing, bool),
     /// Rough boundary.
     Microfacet {
-        /// Beckmann's distribution, otherwise GGX.
-        beckmann: bool,
+        /// The distribution of facets.
+        distribution: Facets,
+        /// The Fresnel term.
+        term: Term,
         /// The refracting half, otherwise the reflecting one.
         refract: bool,
     },
     /// Smooth mirror.
-    Reflection,
+    Reflection(Term),
     /// Smooth refraction.
-    Refraction,
+    Refraction(Term),
     /// Straight through.
     Transparent,
+}
+
+/// The distributions of facets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Facets {
+    /// Trowbridge and Reitz.
+    Ggx,
+    /// Beckmann.
+    Beckmann,
+    /// Blinn.
+    Blinn,
 }
 
 impl Kind {
     /// True for lobes of one direction, which have no density.
     pub fn is_delta(self) -> bool {
-        matches!(self, Kind::Reflection | Kind::Refraction | Kind::Transparent)
+        matches!(self, Kind::Reflection(_) | Kind::Refraction(_) | Kind::Transparent)
     }
 
     /// True for lobes that scatter light about evenly, whatever the directions.
@@ -124,8 +153,8 @@ impl Kind {
     /// What sampling it counts as.
     pub fn event(self) -> u8 {
         match self {
-            Kind::Reflection => event::DELTA_REFLECT,
-            Kind::Refraction => event::DELTA_REFRACT,
+            Kind::Reflection(_) => event::DELTA_REFLECT,
+            Kind::Refraction(_) => event::DELTA_REFRACT,
             Kind::Transparent => event::STRAIGHT,
             Kind::Microfacet { .. } | Kind::Phong | Kind::Ward { .. } | Kind::Highlight | Kind::Lafortune => {
                 event::GLOSSY

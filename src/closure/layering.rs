@@ -5,14 +5,16 @@
 //! as its own top plus what that lets through of its base. The sum is clamped to 1. The albedo of each leaf is the
 //! one its model documents; transmitting lobes count too, as what they pass has left the base's light.
 
-use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes};
+use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes, top_albedo_lanes};
 use super::kinds::Kind;
 use super::kinds::with_source;
 use super::media::Media;
 use super::settings::Layering;
 use super::surfaces::{NONE, Surface, Surfaces};
 use crate::bsdf::GAUSS;
-use crate::bsdf::fresnel::dielectric;
+use crate::bsdf::specular::{reflection, refraction};
+use glam::Vec3;
+use std::borrow::Cow;
 
 /// Which direction an albedo is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -235,7 +237,7 @@ impl Layers {
                     here.fill(0.0);
                     for &(surface, t) in &self.leaves[first as usize..last as usize] {
                         let surface = &surfaces.list[surface as usize];
-                        surface_albedo(surfaces, surface, side, &mut self.scratch);
+                        covering_albedo(surfaces, surface, side, &mut self.scratch);
                         let t = surfaces.column(t);
                         for i in 0..n {
                             let there = surfaces.gate(surface, i) > 0.0;
@@ -283,7 +285,7 @@ fn column_or<'a>(store: &'a [f32], layer: u32, ones: &'a [f32]) -> &'a [f32] {
 fn top_albedo(layer: &Layer, surfaces: &Surfaces, side: Side, values: &[f32], out: &mut [f32]) {
     let n = surfaces.lanes;
     match layer.top {
-        Top::Surface(surface) => surface_albedo(surfaces, &surfaces.list[surface as usize], side, out),
+        Top::Surface(surface) => covering_albedo(surfaces, &surfaces.list[surface as usize], side, out),
         Top::Boundary => out.fill(0.0),
         Top::Tree(step) => {
             for (o, v) in out.iter_mut().zip(&values[step as usize * n..(step as usize + 1) * n]) {
@@ -293,29 +295,40 @@ fn top_albedo(layer: &Layer, surfaces: &Surfaces, side: Side, values: &[f32], ou
     }
 }
 
+/// The albedo of a surface that lies on top of something: [`surface_albedo`], from tables where that is an estimate.
+fn covering_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &mut [f32]) {
+    if !matches!(surface.kind, Kind::Microfacet { .. }) {
+        return surface_albedo(surfaces, surface, side, out);
+    }
+    let cos = cosines(surfaces, surface, side);
+    with_source!(surfaces, surface, |M, source| top_albedo_lanes::<M, _>(source, &cos, out));
+}
+
+/// The cosines of a direction to a surface's normal.
+fn cosines<'a>(surfaces: &'a Surfaces, surface: &Surface, side: Side) -> Cow<'a, [f32]> {
+    let frame = &surfaces.frames()[surface.frame as usize];
+    match side {
+        Side::View => Cow::Borrowed(&frame.wo.z),
+        Side::Light => Cow::Borrowed(&frame.wi.z),
+        Side::Fixed(value) => Cow::Owned(vec![value; surfaces.lanes]),
+    }
+}
+
 /// The albedo of one surface in every lane.
 pub fn surface_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &mut [f32]) {
     if surface.kind == Kind::Transparent {
         out.fill(1.0);
         return;
     }
-    let frame = &surfaces.frames()[surface.frame as usize];
-    let fixed;
-    let cos: &[f32] = match side {
-        Side::View => &frame.wo.z,
-        Side::Light => &frame.wi.z,
-        Side::Fixed(value) => {
-            fixed = vec![value; surfaces.lanes];
-            &fixed
-        }
-    };
-    if surface.kind.is_delta() {
+    let cos = cosines(surfaces, surface, side);
+    if let Kind::Reflection(term) | Kind::Refraction(term) = surface.kind {
+        let meet = if matches!(surface.kind, Kind::Reflection(_)) { reflection } else { refraction };
         for (lane, value) in out.iter_mut().enumerate() {
-            let eta = surfaces.param(surface, 0, lane);
-            let reflected = dielectric(cos[lane], eta);
-            *value = if surface.kind == Kind::Reflection { reflected } else { 1.0 - reflected };
+            let c = cos[lane].abs().min(1.0);
+            let viewer = Vec3::new(((1.0 - c) * (1.0 + c)).sqrt(), 0.0, c);
+            *value = meet(viewer, term, surfaces.params(surface, lane)).part.max_element();
         }
         return;
     }
-    with_source!(surfaces, surface, |M, source| albedo_lanes::<M, _>(source, cos, out));
+    with_source!(surfaces, surface, |M, source| albedo_lanes::<M, _>(source, &cos, out));
 }

@@ -45,7 +45,7 @@ pub struct SampleScratch {
     left: Vec<f32>,
     chosen: Vec<u32>,
     xi: Column3,
-    parts: Vec<f32>,
+    parts: Column3,
     evaluation: Evaluation,
 }
 
@@ -83,8 +83,7 @@ impl Lobes {
         scratch.left.clone_from(&xi.z);
         scratch.chosen.clear();
         scratch.chosen.resize(n, NONE);
-        scratch.parts.clear();
-        scratch.parts.resize(n, 0.0);
+        scratch.parts.resize(n);
         for index in 0..self.lobes.len() {
             let pick = &self.picks[index * n..(index + 1) * n];
             pick_lanes(index as u32, pick, &mut scratch.left, &mut scratch.xi.z, &mut scratch.chosen);
@@ -116,21 +115,23 @@ impl Lobes {
                 for lane in (0..self.lanes).filter(|&lane| chosen[lane] == index as u32) {
                     if surface.kind == Kind::Transparent {
                         wi.set(lane, -self.wo.get(lane));
-                        parts[lane] = 1.0;
+                        parts.set(lane, Vec3::ONE);
                         continue;
                     }
                     let frame = &self.surfaces.frames()[surface.frame as usize];
-                    let (local, eta) = (frame.wo.get(lane), self.surfaces.param(surface, 0, lane));
-                    let mirror = surface.kind == Kind::Reflection;
-                    let Specular { wi: to, part } =
-                        if mirror { reflection(local, eta) } else { refraction(local, eta) };
+                    let (local, params) = (frame.wo.get(lane), self.surfaces.params(surface, lane));
+                    let Specular { wi: to, part } = match surface.kind {
+                        Kind::Refraction(term) => refraction(local, term, params),
+                        Kind::Reflection(term) => reflection(local, term, params),
+                        _ => continue,
+                    };
                     let axes = Frame {
                         tangent: frame.tangent.get(lane),
                         bitangent: frame.bitangent.get(lane),
                         normal: frame.normal.get(lane),
                     };
                     wi.set(lane, axes.to_world(to));
-                    parts[lane] = part;
+                    parts.set(lane, part);
                 }
                 continue;
             }
@@ -165,13 +166,13 @@ impl Lobes {
         let kind = self.surfaces.list[lobe.surface as usize].kind;
         if kind.is_delta() {
             let visible = match kind {
-                Kind::Reflection => self.side[lane] > 0.0,
-                Kind::Refraction => self.side[lane] < 0.0,
+                Kind::Reflection(_) => self.side[lane] > 0.0,
+                Kind::Refraction(_) => self.side[lane] < 0.0,
                 _ => true,
             };
             let pick = self.picks[chosen as usize * n + lane];
             let scale = self.layers.scale_of(lobe.layer, &self.ones)[lane];
-            let part = if visible { self.scratch.parts[lane] * scale / pick } else { 0.0 };
+            let part = if visible { self.scratch.parts.get(lane) * (scale / pick) } else { Vec3::ZERO };
             let at = 3 * n * chosen as usize + lane;
             let weight = Vec3::new(self.weights[at], self.weights[at + n], self.weights[at + 2 * n]) * part;
             let tint = self.media.get(self.layers.medium(lobe.layer)).map_or(Vec3::ONE, |medium| medium.tint(lane));

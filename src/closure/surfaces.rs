@@ -186,6 +186,11 @@ impl Surfaces {
         }
     }
 
+    /// All parameters of a surface in a lane; those that its model does not read may be anything.
+    pub fn params(&self, surface: &Surface, lane: usize) -> Params {
+        std::array::from_fn(|index| self.param(surface, index, lane))
+    }
+
     /// Adds a surface and gives its index. Its parameters come from the tree; the one at `eta` is inverted
     /// where the viewer is inside. Lanes with a parameter or normal that is not a number get a gate that is not a number.
     pub fn push(&mut self, tree: &Tree, request: Request) -> u32 {

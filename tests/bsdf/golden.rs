@@ -3,7 +3,8 @@
 use crate::{direction, narrow};
 use serde_json::Value;
 use std::sync::LazyLock;
-use velour::bsdf::microfacet::distributions::{Widths, beckmann_d, beckmann_lambda, ggx_d, ggx_lambda};
+use velour::bsdf::microfacet::distribution::{Distribution, Widths};
+use velour::bsdf::microfacet::{Beckmann, Ggx};
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::reference::{self, Model};
 use velour::bsdf::sheen::shadowing::{Exact, Published, soften};
@@ -230,11 +231,11 @@ fn microfacet_distributions() {
         let widths = |a: f64| Widths { x: a as f32, y: a as f32 };
         let lambda = |c: f64, a: f64| {
             let w = narrow(direction(c, 0.7));
-            if k == 0 { ggx_lambda(w, widths(a)) } else { beckmann_lambda(w, widths(a)) }
+            if k == 0 { Ggx(widths(a)).lambda(w) } else { Beckmann(widths(a)).lambda(w) }
         };
         for row in rows(&format!("{name}_d")) {
             let (m, w) = (narrow(direction(row.get("cos_h"), 0.3)), widths(row.get("param")));
-            let d = if k == 0 { ggx_d(m, w) } else { beckmann_d(m, w) };
+            let d = if k == 0 { Ggx(w).d(m) } else { Beckmann(w).d(m) };
             worst[3 * k] = worst[3 * k].max(error(d, row.get("value"), 1e-6));
         }
         for row in rows(&format!("{name}_lambda")) {

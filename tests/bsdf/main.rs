@@ -4,6 +4,7 @@ mod coat;
 mod fits;
 mod golden;
 mod layering;
+mod microfacet;
 mod samplers;
 mod stability;
 mod stress;

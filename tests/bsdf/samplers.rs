@@ -2,8 +2,9 @@
 
 use crate::{SEED, direction, narrow};
 use glam::Vec3;
+use velour::bsdf::fresnel::Dielectric;
 use velour::bsdf::lambert::{Lambert, Translucent};
-use velour::bsdf::microfacet::Microfacet;
+use velour::bsdf::microfacet::{Beckmann, Ggx, Microfacet};
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::normals::ByNormals;
 use velour::bsdf::sheen::sampling::SheenSampling;
@@ -92,12 +93,12 @@ fn samples_follow_their_densities() {
     passes::<Sheen<PUBLISHED, true>>([0.25, 0.1, 0.0, 0.0], "sheen published");
     passes::<Sheen<ASHIKHMIN, false>>([0.4, 0.1, 0.0, 0.0], "sheen ashikhmin");
     for (x, y) in [(0.3, 0.3), (0.2, 0.6), (1.0, 1.0)] {
-        passes::<Microfacet<false, false>>([x, y, 1.5, 0.0], "ggx reflecting");
-        passes::<Microfacet<true, false>>([x, y, 1.5, 0.0], "beckmann reflecting");
+        passes::<Microfacet<Ggx, Dielectric, false>>([x, y, 1.5, 0.0], "ggx reflecting");
+        passes::<Microfacet<Beckmann, Dielectric, false>>([x, y, 1.5, 0.0], "beckmann reflecting");
     }
     for eta in [1.5, 1.0 / 1.5] {
-        passes::<Microfacet<false, true>>([0.4, 0.4, eta, 0.0], "ggx refracting");
-        passes::<Microfacet<true, true>>([0.3, 0.5, eta, 0.0], "beckmann refracting");
+        passes::<Microfacet<Ggx, Dielectric, true>>([0.4, 0.4, eta, 0.0], "ggx refracting");
+        passes::<Microfacet<Beckmann, Dielectric, true>>([0.3, 0.5, eta, 0.0], "beckmann refracting");
     }
 }
 
@@ -137,8 +138,8 @@ fn a_density_five_percent_wrong_is_rejected() {
     }
     rejected::<Lambert>([0.0; 4]);
     rejected::<Sheen<EXACT, true>>([0.25, 0.1, 0.0, 0.0]);
-    rejected::<Microfacet<false, false>>([0.3, 0.3, 1.5, 0.0]);
-    rejected::<Microfacet<false, true>>([0.4, 0.4, 1.5, 0.0]);
+    rejected::<Microfacet<Ggx, Dielectric, false>>([0.3, 0.3, 1.5, 0.0]);
+    rejected::<Microfacet<Ggx, Dielectric, true>>([0.4, 0.4, 1.5, 0.0]);
 }
 
 /// Relative variance of the one-sample estimate of the albedo, by quadrature.

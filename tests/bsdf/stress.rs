@@ -2,7 +2,8 @@
 
 use crate::SEED;
 use glam::Vec3;
-use velour::bsdf::microfacet::Microfacet;
+use velour::bsdf::fresnel::Dielectric;
+use velour::bsdf::microfacet::{Beckmann, Ggx, Microfacet};
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::reference::{self, Model};
 use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
@@ -95,10 +96,10 @@ fn every_model_is_finite_everywhere() {
     let mut random = Random(SEED + 1);
     for k in 0..60_000 {
         for eta in [0.0, 0.7, 1.0, 1.5] {
-            check::<Microfacet<false, false>>([-1.0, 0.3, eta, 0.0], &mut random, k);
-            check::<Microfacet<false, true>>([-1.0, -1.0, eta, 0.0], &mut random, k);
-            check::<Microfacet<true, false>>([-1.0, -1.0, eta, 0.0], &mut random, k);
-            check::<Microfacet<true, true>>([-1.0, 0.9, eta, 0.0], &mut random, k);
+            check::<Microfacet<Ggx, Dielectric, false>>([-1.0, 0.3, eta, 0.0], &mut random, k);
+            check::<Microfacet<Ggx, Dielectric, true>>([-1.0, -1.0, eta, 0.0], &mut random, k);
+            check::<Microfacet<Beckmann, Dielectric, false>>([-1.0, -1.0, eta, 0.0], &mut random, k);
+            check::<Microfacet<Beckmann, Dielectric, true>>([-1.0, 0.9, eta, 0.0], &mut random, k);
         }
         check::<OrenNayar>([-1.0, 0.0, 0.0, 0.0], &mut random, k);
         check::<Velvet>([0.0, 0.0, 0.0, 0.0], &mut random, k);
@@ -117,7 +118,7 @@ fn unsoftened_models_are_reciprocal() {
             continue;
         }
         let sheen = Sheen::<EXACT, false>::prepare(params([r, 0.1]));
-        let rough = Microfacet::<false, false>::prepare(params([r.max(0.05), 0.2, 1.5]));
+        let rough = Microfacet::<Ggx, Dielectric, false>::prepare(params([r.max(0.05), 0.2, 1.5]));
         let diffuse = OrenNayar::prepare(params([r]));
         let both =
             |a: f32, b: f32| assert!((a - b).abs() <= 2e-3 * a.abs().max(b.abs()) + 1e-6, "{a} {b} {wo} {wi} {r}");

@@ -1,17 +1,29 @@
-//! Rough dielectric boundaries: microfacets of Trowbridge and Reitz (GGX) or Beckmann, reflecting or refracting.
+//! Rough boundaries: microfacets of a distribution and a Fresnel term, reflecting or refracting.
 //!
-//! `microfacet(..., refract 2)` becomes one reflecting and one refracting lobe. `eta` is transmitted over incident as seen
+//! A closure that does both becomes one reflecting and one refracting lobe. The index is transmitted over incident as seen
 //! from the side of the normal; radiance is not scaled by 1 / eta², as in OSL's renderers, so white stays white.
 //!
-//! Decision (2026-11-22): both distributions sample visible normals of GGX (spherical caps), because
-//! Beckmann's D is at most 4/e = 1.47 times GGX's of the same width, so its weights stay bounded without the iteration
-//! that its own visible normals need, instead of sampling D cos, whose weights are unbounded at grazing views.
+//! Decision (2026-11-22): all distributions sample visible normals of GGX (spherical caps), because Beckmann's and
+//! Blinn's D are at most 4/e = 1.47 times GGX's of the same width, so their weights stay bounded without the iteration
+//! that visible normals of their own need, instead of sampling D cos, whose weights (o . m) / ((n . o) (n . m)) are
+//! unbounded at grazing views. The latter is kept as [`Sampling::Normals`], to be compared with.
+//!
+//! Decision (2026-11-22): the shadowing term and the way of sampling are one parameter, because the three terms share the
+//! two Lambdas and the lane loop blends them, instead of types, of which there are fifteen already.
 
-pub mod distributions;
+pub mod albedo;
+pub mod beckmann;
+pub mod blinn;
+pub mod distribution;
+pub mod ggx;
 
-use super::fresnel::{dielectric, refracted};
+pub use beckmann::Beckmann;
+pub use blinn::Blinn;
+pub use ggx::Ggx;
+
+use super::fresnel::{Fresnel, limited, refracted};
 use super::{Eval, Params, Scatter, Side, View, select};
-use distributions::{Widths, beckmann_d, beckmann_lambda, ggx_d, ggx_lambda};
+use distribution::{Distribution, Widths};
 use glam::Vec3;
 
 /// Below this width in both directions a boundary counts as smooth.
@@ -20,76 +32,142 @@ pub const MIN_ALPHA: f32 = 1e-3;
 /// The least |eta - 1| that refracts visibly; nearer to 1 light goes straight on.
 pub const MIN_ETA_DIFFERENCE: f32 = 1e-3;
 
-/// One side of a rough boundary: what it reflects (`REFRACT` false) or what it lets through.
-///
-/// Source: Walter, Marschner, Li and Torrance 2007, eq. 20, 21, 38 with the height-correlated Smith term (Heitz 2014,
-/// eq. 99). Domain: widths clamped to 1e-3..1, any eta; eta <= 0 reflects all. Gives: f cos in 1/sr.
-/// Degenerate cases: light on the wrong side gives 0, total reflection refracts nothing.
-/// Albedo: Fresnel's part at the angle to the shading normal; light lost between facets is not subtracted, so as
-/// the top of a layer a wide lobe takes too much from its base.
-#[derive(Clone, Copy, Debug)]
-pub struct Microfacet<const BECKMANN: bool, const REFRACT: bool> {
-    widths: Widths,
-    eta: f32,
+/// How facets shadow each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// Smith, masking and shadowing correlated by height (Heitz 2014, eq. 99).
+    Smith,
+    /// Smith, the product of masking and shadowing (Smith 1967; Walter et al. 2007, eq. 23).
+    Separable,
+    /// V-shaped grooves (Torrance and Sparrow 1967; Blinn 1977): min(1, 2 (n.m)(n.o)/(o.m), 2 (n.m)(n.i)/(o.m)).
+    /// They say nothing of refraction, where the correlated Smith term stands in.
+    VGroove,
 }
 
-impl<const BECKMANN: bool, const REFRACT: bool> Microfacet<BECKMANN, REFRACT> {
+/// How directions are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampling {
+    /// Reflection at a facet that the viewer sees, of GGX of the same widths.
+    Visible,
+    /// Reflection at any facet, with density D cos (the half-vector sampling of Blinn's and Walter's models).
+    Normals,
+}
+
+impl Geometry {
+    /// All of them, by the word that chooses them.
+    pub const ALL: &[(&str, Geometry)] =
+        &[("smith", Geometry::Smith), ("separable", Geometry::Separable), ("vgroove", Geometry::VGroove)];
+}
+
+impl Sampling {
+    /// All of them, by the word that chooses them.
+    pub const ALL: &[(&str, Sampling)] = &[("visible", Sampling::Visible), ("normals", Sampling::Normals)];
+}
+
+/// The parameter of [`Microfacet`] that stands for these choices; 0 is the default.
+pub fn method(geometry: Geometry, sampling: Sampling) -> f32 {
+    f32::from(geometry as u8) + 3.0 * f32::from(sampling as u8)
+}
+
+/// One side of a rough boundary: what it reflects (`REFRACT` false) or what it lets through.
+///
+/// Parameters: widths along x and y, those of the Fresnel term, and [`method`].
+/// Source: Walter, Marschner, Li and Torrance 2007, eq. 20, 21, 38 with a shadowing term of [`Geometry`].
+/// Domain: widths clamped to 1e-3..1, any index. Gives: f cos in 1/sr, of a colored Fresnel term without it.
+/// Degenerate cases: light on the wrong side gives 0, an index <= 0 and total reflection refract nothing.
+/// Albedo: for picking, Fresnel's part at three angles; what a layer's top takes is a matter of tables.
+#[derive(Clone, Copy, Debug)]
+pub struct Microfacet<D, F, const REFRACT: bool> {
+    distribution: D,
+    visible: Ggx,
+    fresnel: F,
+    /// 1 when the product of both Lambdas counts.
+    separable: f32,
+    groove: bool,
+    normals: bool,
+}
+
+/// A facet between two directions, with the cosine to the viewer.
+struct Facet {
+    m: Vec3,
+    om: f32,
+    /// Squared length of the vector that was normalised.
+    length2: f32,
+}
+
+impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT> {
+    /// The facet that sends `wi` to `wo`.
     #[inline(always)]
-    fn d(&self, m: Vec3) -> f32 {
-        if BECKMANN { beckmann_d(m, self.widths) } else { ggx_d(m, self.widths) }
+    fn facet(&self, wo: Vec3, wi: Vec3) -> Facet {
+        let h = if REFRACT { wi * self.fresnel.eta() + wo } else { wo + wi };
+        let length2 = h.dot(h).max(1e-30);
+        let up = if REFRACT { 1f32.copysign(h.z) } else { 1.0 };
+        let m = h * (up / length2.sqrt());
+        Facet { m, om: wo.dot(m), length2 }
     }
 
+    /// The part of Smith's term that both sides share.
     #[inline(always)]
-    fn lambda(&self, w: Vec3) -> f32 {
-        if BECKMANN { beckmann_lambda(w, self.widths) } else { ggx_lambda(w, self.widths) }
-    }
-
-    /// Density of visible normals of GGX over (wo . m), from G1 over the viewer's cosine: what both distributions sample.
-    #[inline(always)]
-    fn visible(&self, over_cos: f32, m: Vec3) -> f32 {
-        ggx_d(m, self.widths) * over_cos
+    fn smith(&self, lambda_o: f32, lambda_i: f32) -> f32 {
+        1.0 / (1.0 + lambda_o + lambda_i + self.separable * (lambda_o * lambda_i))
     }
 
     #[inline(always)]
     fn reflect(&self, wo: Vec3, view: View, wi: Vec3) -> Eval {
-        let h = wo + wi;
-        let m = h * (1.0 / h.dot(h).max(1e-30).sqrt());
-        let g2 = 1.0 / (1.0 + view[0] + self.lambda(wi));
-        let f_cos = dielectric(wo.dot(m), self.eta) * self.d(m) * g2 * 0.25 * view[2];
+        let Facet { m, om, .. } = self.facet(wo, wi);
+        let over_om = 1.0 / om.max(1e-20);
+        let groove = (2.0 * m.z * wo.z.min(wi.z) * over_om).min(1.0);
+        let g = select(self.groove, groove, self.smith(view[0], self.distribution.lambda(wi)));
+        let d = self.distribution.d(m);
+        let part = if F::COLORED { 1.0 } else { self.fresnel.largest(om) };
+        let density = select(self.normals, d * m.z * over_om, self.visible.d(m) * view[1]);
         let lit = wi.z > 0.0 && wo.z > 0.0;
-        Eval { f_cos: select(lit, f_cos, 0.0), pdf: select(lit, 0.25 * self.visible(view[1], m), 0.0) }
+        Eval { f_cos: select(lit, part * d * g * 0.25 * view[2], 0.0), pdf: select(lit, 0.25 * density, 0.0) }
     }
 
     #[inline(always)]
     fn refract(&self, wo: Vec3, view: View, wi: Vec3) -> Eval {
-        let h = wi * self.eta + wo;
-        let length2 = h.dot(h).max(1e-30);
-        let m = h * (1f32.copysign(h.z) / length2.sqrt());
-        let (om, im) = (wo.dot(m), wi.dot(m));
+        let Facet { m, om, length2 } = self.facet(wo, wi);
+        let (im, eta) = (wi.dot(m), self.fresnel.eta());
         // The change from facets to light directions: eta² |wi . m| / (wo . m + eta wi . m)².
-        let jacobian = self.eta * self.eta * im.abs() / length2;
-        let g2 = 1.0 / (1.0 + view[0] + self.lambda(wi));
-        let through = 1.0 - dielectric(om, self.eta);
-        let f_cos = through * self.d(m) * g2 * om * jacobian * view[2];
-        let lit = wi.z < 0.0 && wo.z > 0.0 && om > 0.0 && im < 0.0 && self.eta > 0.0;
-        Eval { f_cos: select(lit, f_cos, 0.0), pdf: select(lit, self.visible(view[1], m) * om * jacobian, 0.0) }
+        let jacobian = eta * eta * im.abs() / length2;
+        let g = self.smith(view[0], self.distribution.lambda(wi));
+        let d = self.distribution.d(m);
+        let part = if F::COLORED { 1.0 } else { self.fresnel.passed(om) };
+        let density = select(self.normals, d * m.z, self.visible.d(m) * view[1] * om);
+        let lit = wi.z < 0.0 && wo.z > 0.0 && om > 0.0 && im < 0.0 && eta > 0.0;
+        let f_cos = part * d * g * om * jacobian * view[2];
+        Eval { f_cos: select(lit, f_cos, 0.0), pdf: select(lit, density * jacobian, 0.0) }
     }
 }
 
-impl<const BECKMANN: bool, const REFRACT: bool> Scatter for Microfacet<BECKMANN, REFRACT> {
-    const PARAMS: usize = 3;
+impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D, F, REFRACT> {
+    const PARAMS: usize = 3 + F::PARAMS;
     const SIDE: Side = if REFRACT { Side::Other } else { Side::Same };
+    const COLORED: bool = F::COLORED;
     const VIEW: usize = 3;
 
     #[inline(always)]
-    fn prepare([x, y, eta, ..]: Params) -> Self {
-        Microfacet { widths: Widths { x: x.clamp(MIN_ALPHA, 1.0), y: y.clamp(MIN_ALPHA, 1.0) }, eta: eta.min(1e3) }
+    fn prepare(params: Params) -> Self {
+        let widths = Widths { x: limited(params[0], MIN_ALPHA, 1.0), y: limited(params[1], MIN_ALPHA, 1.0) };
+        let distribution = D::new(widths);
+        let method = params[2 + F::PARAMS];
+        let normals = method > 2.5;
+        let geometry = method - select(normals, 3.0, 0.0);
+        Microfacet {
+            distribution,
+            visible: Ggx(distribution.widths()),
+            fresnel: F::prepare(params, 2),
+            separable: select(geometry > 0.5 && geometry < 1.5, 1.0, 0.0),
+            groove: !REFRACT && geometry > 1.5,
+            normals,
+        }
     }
 
     #[inline(always)]
     fn view(&self, wo: Vec3) -> View {
         let over_cos = 1.0 / wo.z.max(1e-30);
-        [self.lambda(wo), over_cos / (1.0 + ggx_lambda(wo, self.widths)), over_cos, 0.0, 0.0]
+        [self.distribution.lambda(wo), over_cos / (1.0 + self.visible.lambda(wo)), over_cos, 0.0, 0.0]
     }
 
     #[inline(always)]
@@ -98,23 +176,50 @@ impl<const BECKMANN: bool, const REFRACT: bool> Scatter for Microfacet<BECKMANN,
     }
 
     #[inline(always)]
-    fn sample_from(&self, wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
-        let m = distributions::sample_visible(wo, self.widths, xi.x, xi.y);
-        let wi = if REFRACT { refracted(wo, m, self.eta) } else { m * (2.0 * wo.dot(m)) - wo };
-        // A direction on the wrong side is lost. It must not be kept for the other half of the boundary, which could
-        // have found it with some other density: that would weigh it far too much.
-        let lost = if REFRACT { wi.z >= 0.0 } else { wi.z <= 0.0 };
-        if lost { Vec3::ZERO } else { wi }
+    fn color_from(&self, wo: Vec3, _view: View, wi: Vec3) -> Vec3 {
+        if !F::COLORED {
+            return Vec3::ONE;
+        }
+        let reflected = self.fresnel.color(self.facet(wo, wi).om);
+        if REFRACT { Vec3::ONE - reflected } else { reflected }
     }
 
-    /// An estimate: the Fresnel term averaged over facets tilted by the width. It never reaches 0 or 1, because facets far
-    /// from the normal always send some light either way, and a part that is never picked would be lost.
+    #[inline(always)]
+    fn sample_from(&self, wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
+        let seen = ggx::sample_visible(wo, self.visible.0, xi.x, xi.y);
+        let any = self.distribution.sample_normal(xi.x, xi.y);
+        let m = if self.normals { any } else { seen };
+        let om = wo.dot(m);
+        let wi = if REFRACT { refracted(wo, m, self.fresnel.eta()) } else { m * (2.0 * om) - wo };
+        // A direction on the wrong side is lost. It must not be kept for the other half of the boundary, which could
+        // have found it with some other density: that would weigh it far too much. So is a facet that faces away.
+        let lost = if REFRACT { wi.z >= 0.0 } else { wi.z <= 0.0 };
+        if lost || om <= 0.0 { Vec3::ZERO } else { wi }
+    }
+
+    /// An estimate: the Fresnel term averaged over facets tilted by the width. Where there are two halves it never reaches 0
+    /// or 1, because facets far from the normal always send some light either way, and a part that is never picked would be lost.
     #[inline(always)]
     fn albedo(&self, cos: f32) -> f32 {
-        let width = self.widths.x.max(self.widths.y);
-        let tilted = |by: f32| dielectric((cos + by * width).clamp(1e-3, 1.0), self.eta);
-        let reflected = 0.25 * (tilted(-1.0) + tilted(1.0)) + 0.5 * dielectric(cos, self.eta);
-        let limited = select(self.eta > 0.0, reflected.clamp(0.02, 0.97), 1.0);
-        if REFRACT { 1.0 - limited } else { limited }
+        let widths = self.visible.0;
+        let width = widths.x.max(widths.y);
+        let at = |c: f32| if REFRACT { self.fresnel.passed(c) } else { self.fresnel.largest(c) };
+        let tilted = |by: f32| at((cos + by * width).clamp(1e-3, 1.0));
+        let part = 0.25 * (tilted(-1.0) + tilted(1.0)) + 0.5 * at(cos);
+        if REFRACT {
+            select(self.fresnel.eta() > 0.0, part.clamp(0.03, 0.98), 0.0)
+        } else {
+            select(self.fresnel.eta() > 0.0, part.clamp(0.02, 0.97), part.clamp(0.02, 1.0))
+        }
+    }
+
+    /// From the distribution's table: of the reflecting half with the correlated Smith term, for the geometric mean of the widths.
+    /// Of the transmitting half it is [`Scatter::albedo`].
+    fn top_albedo(&self, cos: f32) -> f32 {
+        if REFRACT {
+            return self.albedo(cos);
+        }
+        let w = self.visible.0;
+        D::table().albedo(&self.fresnel, (w.x * w.y).sqrt(), cos)
     }
 }

@@ -1,8 +1,9 @@
 //! Clear coats: a boundary lobe, and a medium under it.
 
 use super::{Arguments, Cover, Leaf, LeafContext, Part, variants};
-use crate::bsdf::microfacet::MIN_ALPHA;
-use crate::closure::kinds::Kind;
+use crate::bsdf::fresnel::Term;
+use crate::bsdf::microfacet::{Geometry, MIN_ALPHA, Sampling, method};
+use crate::closure::kinds::{Facets, Kind};
 use crate::closure::media::Coat;
 use crate::closure::surfaces::{NONE, Request, Surfaces};
 use crate::closure::tree::Floats;
@@ -16,12 +17,14 @@ pub(super) fn leaf(surfaces: &mut Surfaces, context: &LeafContext, arguments: &A
     let (absorption, thickness) = (arguments.triple(4), arguments.float(5));
     let frame = surfaces.frame(tree, arguments.triple(1), None, &context.seen);
     let mut leaf = Leaf { base: arguments.closure(0), ..Leaf::default() };
+    let rough = Kind::Microfacet { distribution: Facets::Ggx, term: Term::Dielectric, refract: false };
+    let usual = Floats::Uniform(method(Geometry::Smith, Sampling::Visible));
     // Codes: 1 smooth, 2 rough.
     let code = |lane| 1 + u32::from(tree.float(alpha, lane) >= MIN_ALPHA);
     for (code, gate) in variants(surfaces, &[], code, matches!(alpha, Floats::Varying(_))) {
         let (kind, params) = match code {
-            1 => (Kind::Reflection, &[eta][..]),
-            _ => (Kind::Microfacet { beckmann: false, refract: false }, &[alpha, alpha, eta][..]),
+            1 => (Kind::Reflection(Term::Dielectric), &[eta][..]),
+            _ => (rough, &[alpha, alpha, eta, usual][..]),
         };
         // The viewer is always outside of a coat, so its eta is never inverted.
         let request = Request { kind, closure: arguments.spec.name, frame, params, eta: None, gate };

@@ -14,6 +14,7 @@ use super::media::Coat;
 use super::settings::{Layering, Settings};
 use super::surfaces::{NONE, Request, Seen, Surfaces};
 use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
+use crate::bsdf::fresnel::Term;
 use crate::lang::closures::{ClosureSpec, Model};
 use crate::lang::symbols::Symbol;
 
@@ -48,6 +49,8 @@ pub struct Leaf {
     pub covers: Vec<Cover>,
     /// A color that its weight is multiplied with.
     pub tint: Option<[Floats; 3]>,
+    /// A color for each part in their order, in place of `tint`; empty for none.
+    pub tints: Vec<[Floats; 3]>,
     /// The tree on top, of `layer`.
     pub top: Option<NodeId>,
     /// The coat over the base, of `coat`; flattening makes a medium of it.
@@ -180,9 +183,12 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::Ward => historic::ward(surfaces, context, &arguments),
         Model::AshikhminShirley => historic::ashikhmin_shirley(surfaces, context, &arguments),
         Model::Lafortune => historic::lafortune(surfaces, context, &arguments),
-        Model::Reflection => single(Kind::Reflection, &[arguments.float(1)], Some(0)),
-        Model::Refraction => single(Kind::Refraction, &[arguments.float(1)], Some(0)),
-        Model::Microfacet => microfacet::leaf(surfaces, context, &arguments),
+        Model::Reflection => single(Kind::Reflection(Term::Dielectric), &[arguments.float(1)], Some(0)),
+        Model::Refraction => single(Kind::Refraction(Term::Dielectric), &[arguments.float(1)], Some(0)),
+        Model::Microfacet => microfacet::plain(surfaces, context, &arguments),
+        Model::DielectricBsdf => microfacet::dielectric(surfaces, context, &arguments),
+        Model::ConductorBsdf => microfacet::conductor(surfaces, context, &arguments),
+        Model::GeneralizedSchlickBsdf => microfacet::generalized_schlick(surfaces, context, &arguments),
         Model::Sheen => cloth::sheen(surfaces, context, &arguments, 1),
         Model::SheenBsdf => cloth::sheen(surfaces, context, &arguments, 0),
         Model::Coat => coat::leaf(surfaces, context, &arguments),

@@ -1,23 +1,10 @@
 //! The closures that OSL has had from the start.
 
-use super::{ClosureSpec, ETA, Model, NORMAL, TANGENT, choice, param, spec};
+use super::{ClosureSpec, Model, NORMAL, param, spec};
 
 /// The closures that OSL has had from the start.
 pub(super) fn specs() -> Vec<ClosureSpec> {
     use super::ParamKind::*;
-    let microfacet = [
-        choice(
-            "distribution",
-            &["ggx", "beckmann", "default", "sharp", ""],
-            "\"ggx\", \"beckmann\" or \"default\" (ggx)",
-        ),
-        NORMAL,
-        TANGENT,
-        param("xalpha", Float, "GGX width along U, 0..1; 0 is a mirror").tried(&[0.3, 0.02, 0.1, 0.6, 1.0]),
-        param("yalpha", Float, "GGX width across U, 0..1").tried(&[0.3, 0.1, 0.8]),
-        ETA,
-        param("refract", Int, "0 reflects, 1 refracts, 2 does both").tried(&[0.0, 1.0, 2.0]),
-    ];
     vec![
         spec(
             "emission",
@@ -52,15 +39,6 @@ pub(super) fn specs() -> Vec<ClosureSpec> {
         ),
         spec("translucent", Model::Translucent, &[NORMAL], &[], "Lambert's transmission").lossless(),
         spec("transparent", Model::Transparent, &[], &[], "lets light pass straight through").lossless(),
-        spec(
-            "reflection",
-            Model::Reflection,
-            &[NORMAL, ETA],
-            &[],
-            "mirror with dielectric Fresnel; eta 0 reflects all",
-        ),
-        spec("refraction", Model::Refraction, &[NORMAL, ETA], &[], "smooth refraction with dielectric Fresnel"),
-        spec("microfacet", Model::Microfacet, &microfacet, &[], "rough dielectric reflection and refraction"),
         spec("holdout", Model::Holdout, &[], &[], "a hole in the alpha channel"),
         spec(
             "debug",

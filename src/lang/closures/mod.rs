@@ -3,6 +3,7 @@
 //! The checker takes signatures from it, the tree printer names and argument order, the flattener the model, and
 //! `velour info` the documentation. A host adds its own closures to a copy of [`ClosureTable::standard`].
 
+mod boundaries;
 mod classic;
 mod cloth;
 mod historic;
@@ -41,12 +42,20 @@ pub struct ParamSpec {
     /// The values that `velour verify` tries (of every component of a color), the usual one first; empty when it decides
     /// nothing that could be verified, and for normals and directions.
     pub sweep: &'static [f32],
+    /// For what velour does not model: the value that asks for nothing, and what is left out at any other.
+    pub left_out: Option<(f32, &'static str)>,
 }
 
 impl ParamSpec {
     /// The same parameter with the values that `velour verify` tries.
     const fn tried(mut self, sweep: &'static [f32]) -> Self {
         self.sweep = sweep;
+        self
+    }
+
+    /// The same parameter, taken and not modelled: every value but this one earns a warning that names what is left out.
+    const fn left_out(mut self, value: f32, what: &'static str) -> Self {
+        self.left_out = Some((value, what));
         self
     }
 }
@@ -94,6 +103,12 @@ pub enum Model {
     Refraction,
     /// `microfacet(distribution, N, U, xalpha, yalpha, eta, refract)`
     Microfacet,
+    /// `dielectric_bsdf(N, U, reflection_tint, transmission_tint, roughness_x, roughness_y, ior, distribution)`
+    DielectricBsdf,
+    /// `conductor_bsdf(N, U, roughness_x, roughness_y, ior, extinction, distribution)`
+    ConductorBsdf,
+    /// `generalized_schlick_bsdf(N, U, reflection_tint, transmission_tint, roughness_x, roughness_y, f0, f90, exponent, distribution)`
+    GeneralizedSchlickBsdf,
     /// `holdout()`
     Holdout,
     /// `debug(tag)`
@@ -193,11 +208,11 @@ impl ClosureTable {
 }
 
 const fn param(name: &'static str, kind: ParamKind, doc: &'static str) -> ParamSpec {
-    ParamSpec { name, kind, doc, choices: &[], sweep: &[] }
+    ParamSpec { name, kind, doc, choices: &[], sweep: &[], left_out: None }
 }
 
 const fn choice(name: &'static str, choices: &'static [&'static str], doc: &'static str) -> ParamSpec {
-    ParamSpec { name, kind: ParamKind::String, doc, choices, sweep: &[] }
+    ParamSpec { name, kind: ParamKind::String, doc, choices, sweep: &[], left_out: None }
 }
 
 const NORMAL: ParamSpec = param("N", ParamKind::Normal, "shading normal, unit length");
@@ -205,14 +220,7 @@ const TANGENT: ParamSpec = param("U", ParamKind::Vector, "direction of xalpha; z
 const ETA: ParamSpec = param("eta", ParamKind::Float, "index of refraction inside over outside, > 0");
 
 /// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
-pub const NOT_YET: &[&str] = &[
-    "dielectric_bsdf",
-    "conductor_bsdf",
-    "generalized_schlick_bsdf",
-    "chiang_hair_bsdf",
-    "anisotropic_vdf",
-    "medium_vdf",
-];
+pub const NOT_YET: &[&str] = &["chiang_hair_bsdf", "anisotropic_vdf", "medium_vdf"];
 
 const LABEL: ParamSpec =
     param("label", ParamKind::String, "a name for the host; velour carries it and gives it no meaning");
@@ -231,6 +239,7 @@ fn spec(
 
 fn standard_specs() -> Vec<ClosureSpec> {
     let mut specs = classic::specs();
+    specs.extend(boundaries::specs());
     specs.extend(cloth::specs());
     specs.extend(historic::specs());
     specs.extend(materialx::specs());

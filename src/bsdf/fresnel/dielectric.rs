@@ -1,5 +1,6 @@
-//! Fresnel reflection of smooth dielectrics, and the refracted direction.
+//! Fresnel reflection of dielectrics, and the refracted direction.
 
+use super::{Fresnel, Params};
 use glam::Vec3;
 
 /// Reflected part of unpolarised light at a dielectric boundary.
@@ -18,6 +19,43 @@ pub fn dielectric(cos: f32, eta: f32) -> f32 {
     let b = (c * (g + c) - 1.0) / (c * (g - c) + 1.0).max(f32::MIN_POSITIVE);
     let f = (0.5 * a * a * (1.0 + b * b)).min(1.0);
     if g2 > 0.0 && eta > 0.0 { f } else { 1.0 }
+}
+
+/// A dielectric. Parameter: eta, transmitted over incident; 0 and less reflects all.
+#[derive(Clone, Copy, Debug)]
+pub struct Dielectric {
+    eta: f32,
+}
+
+impl Fresnel for Dielectric {
+    const PARAMS: usize = 1;
+    const ETA: Option<usize> = Some(0);
+    const COLORED: bool = false;
+
+    #[inline(always)]
+    fn prepare(p: Params, from: usize) -> Self {
+        Dielectric { eta: p[from].min(1e3) }
+    }
+
+    #[inline(always)]
+    fn eta(&self) -> f32 {
+        self.eta
+    }
+
+    #[inline(always)]
+    fn color(&self, cos: f32) -> Vec3 {
+        Vec3::splat(self.largest(cos))
+    }
+
+    #[inline(always)]
+    fn largest(&self, cos: f32) -> f32 {
+        dielectric(cos, self.eta)
+    }
+
+    #[inline(always)]
+    fn passed(&self, cos: f32) -> f32 {
+        1.0 - dielectric(cos, self.eta)
+    }
 }
 
 /// The direction of light refracted at a facet.

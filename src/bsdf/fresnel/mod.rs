@@ -1,0 +1,81 @@
+//! Fresnel reflection: how much a smooth boundary reflects, as one trait with three models, and the refracted direction.
+//!
+//! A model gives a number, the same for every wavelength ([`Dielectric`]), or a color ([`Conductor`], [`Schlick`]); only those
+//! that say [`Fresnel::COLORED`] make a lobe compute three.
+
+pub mod conductor;
+pub mod dielectric;
+pub mod schlick;
+
+pub use conductor::{Conductor, conductor};
+pub use dielectric::{Dielectric, dielectric, refracted};
+pub use schlick::{Schlick, eta_of_reflectance};
+
+use super::Params;
+use glam::Vec3;
+
+/// What a boundary reflects at each angle.
+pub trait Fresnel: Copy {
+    /// How many parameters it reads.
+    const PARAMS: usize;
+    /// Which of them is an index of refraction, to be inverted for a viewer inside.
+    const ETA: Option<usize> = None;
+    /// True when the three components of [`Fresnel::color`] differ.
+    const COLORED: bool;
+    /// Makes the constants from the parameters that begin at index `from`.
+    fn prepare(params: Params, from: usize) -> Self;
+    /// Transmitted over incident index, > 0 when light passes.
+    fn eta(&self) -> f32;
+    /// The reflected part at this cosine of incidence (its sign is ignored), 0..1 in each component.
+    fn color(&self, cos: f32) -> Vec3;
+    /// The reflected part where the components are equal, otherwise the largest one.
+    #[inline(always)]
+    fn largest(&self, cos: f32) -> f32 {
+        let c = self.color(cos);
+        c.x.max(c.y).max(c.z)
+    }
+    /// The largest component of what is not reflected.
+    #[inline(always)]
+    fn passed(&self, cos: f32) -> f32 {
+        let c = self.color(cos);
+        1.0 - c.x.min(c.y).min(c.z)
+    }
+}
+
+/// The models by name, where a type would not do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Term {
+    /// [`Dielectric`].
+    Dielectric,
+    /// [`Conductor`].
+    Conductor,
+    /// [`Schlick`].
+    Schlick,
+}
+
+impl Term {
+    /// [`Fresnel::color`] of these parameters.
+    pub fn color(self, params: Params, cos: f32) -> Vec3 {
+        match self {
+            Term::Dielectric => Dielectric::prepare(params, 0).color(cos),
+            Term::Conductor => Conductor::prepare(params, 0).color(cos),
+            Term::Schlick => Schlick::prepare(params, 0).color(cos),
+        }
+    }
+
+    /// [`Fresnel::eta`] of these parameters.
+    pub fn eta(self, params: Params) -> f32 {
+        match self {
+            Term::Dielectric => Dielectric::prepare(params, 0).eta(),
+            Term::Conductor => Conductor::prepare(params, 0).eta(),
+            Term::Schlick => Schlick::prepare(params, 0).eta(),
+        }
+    }
+}
+
+/// A number brought between two others; what is not a number becomes the lower one.
+#[inline(always)]
+pub(crate) fn limited(x: f32, low: f32, high: f32) -> f32 {
+    let x = if x > low { x } else { low };
+    if x < high { x } else { high }
+}

@@ -1,0 +1,38 @@
+//! What a distribution of microfacets must answer, and the widths that all of them share.
+
+use super::albedo::FacetTable;
+use glam::Vec3;
+
+/// Widths of a distribution along the local x and y axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Widths {
+    /// Width along x.
+    pub x: f32,
+    /// Width along y.
+    pub y: f32,
+}
+
+/// A distribution of microfacets over a flat surface, with the Smith shadowing that belongs to it.
+pub trait Distribution: Copy {
+    /// The albedos of all widths, made when they are first asked for.
+    fn table() -> &'static FacetTable;
+    /// Makes the constants; widths are in 1e-3..1.
+    fn new(widths: Widths) -> Self;
+    /// The widths in force, which are not those given where a model has only one.
+    fn widths(&self) -> Widths;
+    /// Density of facets over solid angle, 1/sr, for a unit m; its projected area is 1. Zero at and below the horizon.
+    fn d(&self, m: Vec3) -> f32;
+    /// Smith's Lambda of a unit direction, >= 0 and finite; its side is ignored.
+    fn lambda(&self, v: Vec3) -> f32;
+    /// A unit micronormal with density D cos for two numbers in [0, 1); m.z >= 0.
+    fn sample_normal(&self, u: f32, v: f32) -> Vec3;
+}
+
+/// The unit normal of slopes that point along an azimuth.
+#[inline(always)]
+pub(super) fn normal_of_slope(w: Widths, r2: f32, (cos, sin): (f32, f32)) -> Vec3 {
+    let r = r2.max(0.0).sqrt();
+    let (x, y) = (w.x * r * cos, w.y * r * sin);
+    let scale = 1.0 / (1.0 + x * x + y * y).sqrt();
+    Vec3::new(x * scale, y * scale, scale)
+}
