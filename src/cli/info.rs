@@ -4,7 +4,7 @@ use super::info_file::shader_text;
 use super::{CompileArgs, Failure, say};
 use crate::compile::CompileError;
 use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
-use crate::lang::closures::{self, ClosureSpec, ClosureTable, ParamKind, ParamSpec};
+use crate::lang::closures::{self, Claim, ClosureSpec, ClosureTable, ParamKind, ParamSpec, Waiver};
 use crate::scene::nearest;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -105,6 +105,7 @@ fn one(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
                 out += &format!("        {} {}: {}\n", kind_name(param.kind), param.name, param.doc);
             }
         }
+        out += &promises(spec);
     }
     for signature in builtins::signatures(name).unwrap_or_default() {
         out += &format!("{}\n", signature_text(name, signature));
@@ -114,6 +115,20 @@ fn one(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
     }
     if NOT_YET.contains(&name) {
         out += "    velour knows this function and does not run it yet: a call is an error\n";
+    }
+    out
+}
+
+/// What a closure does not promise, which `velour verify` measures.
+fn promises(spec: &ClosureSpec) -> String {
+    let mut out = String::new();
+    for Waiver { claim, only, why } in spec.waivers {
+        let what = match claim {
+            Claim::Energy => "may reflect more than arrives",
+            Claim::Reciprocity => "is not reciprocal",
+        };
+        let when = only.map_or(String::new(), |(name, value)| format!(" with {name} {value}"));
+        out += &format!("    {what}{when}: {why}\n");
     }
     out
 }
