@@ -1,5 +1,6 @@
 //! Scattering models and layering: golden figures, stress, samplers against densities, furnaces, trees.
 
+mod albedo;
 mod fits;
 mod golden;
 mod layering;
