@@ -55,7 +55,7 @@ fn cosine_axis(cos: f32, alpha: f32) -> f32 {
 }
 
 impl FacetTable {
-    /// Integrates the distribution at all places of the table; takes some 30 ms.
+    /// Integrates the distribution at all places of the table; takes some 30 ms on one thread.
     pub fn build<D: Distribution>() -> Self {
         let (along, across) = (gauss_legendre(20, 0.0, 1.0), gauss_legendre(14, 0.0, 1.0));
         let mut cells = Vec::with_capacity(WIDTHS * COSINES);
@@ -81,10 +81,10 @@ impl FacetTable {
         FacetTable { cells }
     }
 
-    /// The albedo (its largest component) of a width at a cosine under a Fresnel term.
+    /// The albedo of a width at a cosine under a Fresnel term.
     ///
     /// Domain: alpha 1e-3..1, cosine 0..1. Gives: 0..1.
-    pub fn albedo<F: Fresnel>(&self, fresnel: &F, alpha: f32, cos: f32) -> f32 {
+    pub fn color<F: Fresnel>(&self, fresnel: &F, alpha: f32, cos: f32) -> Vec3 {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
         let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
         let mut sum = [0.0; 2 * NODES];
@@ -104,7 +104,7 @@ impl FacetTable {
             let reflected = if F::COLORED { fresnel.color(at) } else { Vec3::splat(fresnel.largest(at)) };
             color += reflected * weight;
         }
-        color.max_element().clamp(0.0, 1.0)
+        color.clamp(Vec3::ZERO, Vec3::ONE)
     }
 }
 
