@@ -1,5 +1,7 @@
 //! Scattering models and layering: golden figures, stress, samplers against densities, furnaces, trees.
 
+mod albedo;
+mod boundaries;
 mod coat;
 mod fits;
 mod golden;

@@ -8,7 +8,7 @@ use velour::bsdf::fresnel::{Conductor, Dielectric, Fresnel, Schlick, conductor, 
 use velour::bsdf::microfacet::distribution::{Distribution, Widths};
 use velour::bsdf::microfacet::{Beckmann, Blinn, Geometry, Ggx, Microfacet, Sampling, method};
 use velour::bsdf::{Params, Scatter, Side, params};
-use velour::math::quadrature::gauss_legendre;
+use velour::math::quadrature::{Node, gauss_legendre};
 use velour::measure::statistics::Random;
 
 static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
@@ -67,6 +67,8 @@ fn blinn_is_as_tabulated() {
     }
 }
 
+static NODES: LazyLock<Vec<Node>> = LazyLock::new(|| gauss_legendre(300, -1.0, 1.0));
+
 /// Smith's Lambda of Blinn from its definition, in f64.
 fn blinn_lambda_by_quadrature(alpha: f64, c: f64) -> f64 {
     // D projected on the azimuth of the direction: P(q) of slopes is proportional to (1 + q²)^(-(s+3)/2), and
@@ -74,19 +76,18 @@ fn blinn_lambda_by_quadrature(alpha: f64, c: f64) -> f64 {
     let half = 1.0 / (alpha * alpha) + 0.5;
     let front = {
         // The integral of (1 + q²)^-half over all q, by the tangent.
-        let nodes = gauss_legendre(400, -1.0, 1.0);
         let scale = 6.0 / (2.0 * half).sqrt();
-        nodes.iter().map(|n| weight_of(n.x, n.weight, scale, half).1).sum::<f64>()
+        NODES.iter().map(|n| weight_of(n.x, n.weight, scale, half).1).sum::<f64>()
     };
     let cot = c / ((1.0 - c) * (1.0 + c)).sqrt();
     let scale = 3.0 / (2.0 * half).sqrt();
-    let tail = |n: &velour::math::quadrature::Node| {
+    let tail = |n: &Node| {
         // q = cot + scale * t / (1 - t), t in 0..1.
         let (t, w) = (0.5 + 0.5 * n.x, 0.5 * n.weight);
         let q = cot + scale * t / (1.0 - t);
         w * scale / (1.0 - t).powi(2) * (q - cot) * (-half * (q * q).ln_1p()).exp()
     };
-    gauss_legendre(400, -1.0, 1.0).iter().map(tail).sum::<f64>() / front / cot
+    NODES.iter().map(tail).sum::<f64>() / front / cot
 }
 
 /// A node in -1..1 spread over all numbers, with the value of (1 + q²)^-half times its weight.

@@ -1,12 +1,12 @@
 //! Directional albedo of the reflecting half under any Fresnel term, from one table a distribution.
 //!
 //! The albedo is the integral of F(o.m) over a measure of the cosines o.m, which depends on the viewer's cosine and the width
-//! alone. The table keeps the five nodes and weights of the Gauss rule of that measure, so the albedo is a sum of five
-//! Fresnel terms: exact for polynomials of degree 9, and 6e-5 off for an index of 1.1 to 2.5 and for metals.
+//! alone. The table keeps the six nodes and weights of the Gauss rule of that measure, so the albedo is a sum of six
+//! Fresnel terms: exact for polynomials of degree 11, and 2e-5 off for an index of 1.1 to 2.5 and for metals.
 //!
 //! Decision (2026-11-22): Gauss nodes instead of moments against fixed hat functions, because F falls from 1 within a
 //! range of sqrt(eta² - 1), which takes some sixty hats; and instead of a table for each Fresnel term, which a textured
-//! index would need by the lane. Axes: cubic interpolation in log alpha + 3 alpha and in log(1 + cos / (0.12 alpha)), whose
+//! index would need by the lane. Axes: cubic interpolation in log alpha + 6 alpha and in log(1 + cos / (0.04 alpha)), whose
 //! range is scaled to the width, because masking depends on cos / alpha near the horizon and on alpha itself elsewhere.
 
 use super::distribution::{Distribution, Widths};
@@ -18,18 +18,20 @@ use glam::Vec3;
 use std::f32::consts::LN_2;
 
 /// Nodes of the rule.
-const NODES: usize = 5;
+const NODES: usize = 6;
 /// Widths in the table.
 const WIDTHS: usize = 24;
 /// Cosines in the table, for each width.
 const COSINES: usize = 40;
 /// How much of the axis is linear in the width.
-const LINEAR: f32 = 3.0;
+const LINEAR: f32 = 6.0;
 /// Where the axis of cosines turns from linear to logarithmic, in widths.
-const BEND: f32 = 0.12;
+const BEND: f32 = 0.04;
 const LEAST: f32 = super::MIN_ALPHA;
 
-/// Nodes, less the viewer's cosine, and their weights.
+/// Weights, times the distance of their nodes from the viewer's cosine, and the weights alone.
+///
+/// Nodes are interpolated as centers of gravity, because those of almost no weight lie far away in one cell and not in the next.
 type Cell = [f32; 2 * NODES];
 
 /// The albedo of the reflecting half of one distribution with the height-correlated Smith term.
@@ -53,11 +55,11 @@ fn cosine_axis(cos: f32, alpha: f32) -> f32 {
 }
 
 impl FacetTable {
-    /// Integrates the distribution at all places of the table; takes some 30 ms.
+    /// Integrates the distribution at all places of the table; takes some 30 ms on one thread.
     pub fn build<D: Distribution>() -> Self {
-        let (along, across) = (gauss_legendre(24, 0.0, 1.0), gauss_legendre(16, 0.0, 1.0));
+        let (along, across) = (gauss_legendre(20, 0.0, 1.0), gauss_legendre(14, 0.0, 1.0));
         let mut cells = Vec::with_capacity(WIDTHS * COSINES);
-        let mut points = Vec::with_capacity(24 * 16);
+        let mut points = Vec::with_capacity(along.len() * across.len());
         for i in 0..WIDTHS {
             let alpha = width_at(i as f32 / (WIDTHS - 1) as f32);
             let distribution = D::new(Widths { x: alpha, y: alpha });
@@ -70,7 +72,7 @@ impl FacetTable {
                 let rule = gauss_rule(&points);
                 let mut cell = [0.0; 2 * NODES];
                 for k in 0..NODES {
-                    cell[k] = (rule[k].x - f64::from(cos)) as f32;
+                    cell[k] = (rule[k].weight * (rule[k].x - f64::from(cos))) as f32;
                     cell[NODES + k] = rule[k].weight as f32;
                 }
                 cells.push(cell);
@@ -79,10 +81,10 @@ impl FacetTable {
         FacetTable { cells }
     }
 
-    /// The albedo (its largest component) of a width at a cosine under a Fresnel term.
+    /// The albedo of a width at a cosine under a Fresnel term.
     ///
     /// Domain: alpha 1e-3..1, cosine 0..1. Gives: 0..1.
-    pub fn albedo<F: Fresnel>(&self, fresnel: &F, alpha: f32, cos: f32) -> f32 {
+    pub fn color<F: Fresnel>(&self, fresnel: &F, alpha: f32, cos: f32) -> Vec3 {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
         let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
         let mut sum = [0.0; 2 * NODES];
@@ -96,11 +98,13 @@ impl FacetTable {
         }
         let mut color = Vec3::ZERO;
         for k in 0..NODES {
-            let at = (sum[k] + cos).clamp(0.0, 1.0);
+            let weight = sum[NODES + k];
+            let away = if weight > 1e-9 { sum[k] / weight } else { 0.0 };
+            let at = (cos + away).clamp(0.0, 1.0);
             let reflected = if F::COLORED { fresnel.color(at) } else { Vec3::splat(fresnel.largest(at)) };
-            color += reflected * sum[NODES + k];
+            color += reflected * weight;
         }
-        color.max_element().clamp(0.0, 1.0)
+        color.clamp(Vec3::ZERO, Vec3::ONE)
     }
 }
 
@@ -162,26 +166,37 @@ impl Stretched {
         (m, om, 2.0 * om * m[2] - self.cos)
     }
 
-    /// The interval of `along` in which facets reflect above the horizon, if there is one.
+    /// Where on a chord the facet reflects highest, and how high.
     ///
-    /// The cosine of the reflected direction has one maximum, and is below the horizon at both ends.
-    fn lit(&self, across: f64) -> Option<[f64; 2]> {
+    /// Source: golden section; the cosine has one maximum, and is below the horizon at both ends.
+    fn highest(&self, across: f64) -> (f64, f64) {
+        const GOLDEN: f64 = 0.618_033_988_749_895;
         let up = |along: f64| self.facet(along, across).2;
         let (mut low, mut high) = (-1.0, self.view[1]);
-        for _ in 0..18 {
-            let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
-            if up(a) < up(b) {
-                low = a;
+        let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+        let (mut up_a, mut up_b) = (up(a), up(b));
+        for _ in 0..10 {
+            if up_a < up_b {
+                (low, a, up_a) = (a, b, up_b);
+                b = low + GOLDEN * (high - low);
+                up_b = up(b);
             } else {
-                high = b;
+                (high, b, up_b) = (b, a, up_a);
+                a = high - GOLDEN * (high - low);
+                up_a = up(a);
             }
         }
-        let top = 0.5 * (low + high);
+        if up_a < up_b { (b, up_b) } else { (a, up_a) }
+    }
+
+    /// The interval of `along` in which facets reflect above the horizon, if there is one.
+    fn lit(&self, across: f64) -> Option<[f64; 2]> {
+        let (top, height) = self.highest(across);
         let edge = |dark: f64| {
             let (mut dark, mut light) = (dark, top);
-            for _ in 0..18 {
+            for _ in 0..13 {
                 let middle = 0.5 * (dark + light);
-                if up(middle) > 0.0 {
+                if self.facet(middle, across).2 > 0.0 {
                     light = middle;
                 } else {
                     dark = middle;
@@ -189,7 +204,7 @@ impl Stretched {
             }
             light
         };
-        (up(top) > 0.0).then(|| [edge(-1.0), edge(self.view[1])])
+        (height > 0.0).then(|| [edge(-1.0), edge(self.view[1])])
     }
 }
 
@@ -207,11 +222,21 @@ fn facets<D: Distribution>(d: &D, alpha: f32, cos: f32, rules: [&[Node]; 2], out
     let (lambda, masking) = (d.lambda(viewer), f64::from(1.0 + ggx.lambda(viewer)));
     // Half the disc's visible part; the other half is its mirror image.
     let area = 0.25 * std::f64::consts::PI * (1.0 + stretched.view[1]);
+    // Chords far from the middle may have no facet that reflects above the horizon.
+    let (mut light, mut dark) = (0.0, 1.0);
+    for _ in 0..9 {
+        let middle = 0.5 * (light + dark);
+        if stretched.highest(middle).1 > 0.0 {
+            light = middle;
+        } else {
+            dark = middle;
+        }
+    }
     for chord in rules[1] {
         // Slow at the rim, where chords shrink like a square root; so are the chords' ends.
         let (q, p) = (chord.x, chord.weight);
-        let across = 0.5 * q * (3.0 - q * q);
-        let width = p * 1.5 * (1.0 - q * q) * (1.0 - across * across).max(0.0).sqrt() / area;
+        let across = 0.5 * q * (3.0 - q * q) * dark;
+        let width = p * 1.5 * (1.0 - q * q) * dark * (1.0 - across * across).max(0.0).sqrt() / area;
         let Some([from, to]) = stretched.lit(across) else { continue };
         for node in rules[0] {
             let t = node.x;
@@ -272,7 +297,7 @@ fn diagonalise(a: &mut [[f64; NODES]; NODES]) -> [f64; NODES] {
     for _ in 0..8 {
         for p in 0..NODES {
             for q in p + 1..NODES {
-                if a[p][q].abs() < 1e-15 {
+                if a[p][q].abs() < 1e-13 {
                     continue;
                 }
                 // The smaller rotation that makes a[p][q] vanish.
@@ -298,11 +323,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rules_integrate_polynomials_of_degree_nine() {
+    fn rules_integrate_polynomials_of_degree_eleven() {
         let points: Vec<Node> =
             (0..50).map(|k| Node { x: f64::from(k) / 49.0, weight: 1.0 + f64::from(k % 7) }).collect();
         let rule = gauss_rule(&points);
-        for degree in 0..10 {
+        for degree in 0..12 {
             let sum = |nodes: &[Node]| nodes.iter().map(|n| n.weight * n.x.powi(degree)).sum::<f64>();
             assert!((sum(&rule) / sum(&points) - 1.0).abs() < 1e-12, "{degree}");
         }

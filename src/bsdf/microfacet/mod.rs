@@ -40,7 +40,8 @@ pub enum Geometry {
     /// Smith, the product of masking and shadowing (Smith 1967; Walter et al. 2007, eq. 23).
     Separable,
     /// V-shaped grooves (Torrance and Sparrow 1967; Blinn 1977): min(1, 2 (n.m)(n.o)/(o.m), 2 (n.m)(n.i)/(o.m)).
-    /// They say nothing of refraction, where the correlated Smith term stands in.
+    /// Refraction has |n.i| / |i.m| in the last place: still at most the masking of the viewer, so both halves of a facet
+    /// share the light that reaches it, which the Smith term beside it would break by up to 29 %.
     VGroove,
 }
 
@@ -112,12 +113,18 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
         1.0 / (1.0 + lambda_o + lambda_i + self.separable * (lambda_o * lambda_i))
     }
 
+    /// The shadowing of grooves: `least` is the smaller of the quotients of cosines to the normal and to the facet.
+    #[inline(always)]
+    fn shadowing(&self, view: View, wi: Vec3, m: Vec3, least: f32) -> f32 {
+        let smith = self.smith(view[0], self.distribution.lambda(wi));
+        select(self.groove, (2.0 * m.z * least).min(1.0), smith)
+    }
+
     #[inline(always)]
     fn reflect(&self, wo: Vec3, view: View, wi: Vec3) -> Eval {
         let Facet { m, om, .. } = self.facet(wo, wi);
         let over_om = 1.0 / om.max(1e-20);
-        let groove = (2.0 * m.z * wo.z.min(wi.z) * over_om).min(1.0);
-        let g = select(self.groove, groove, self.smith(view[0], self.distribution.lambda(wi)));
+        let g = self.shadowing(view, wi, m, wo.z.min(wi.z) * over_om);
         let d = self.distribution.d(m);
         let part = if F::COLORED { 1.0 } else { self.fresnel.largest(om) };
         let density = select(self.normals, d * m.z * over_om, self.visible.d(m) * view[1]);
@@ -131,7 +138,8 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
         let (im, eta) = (wi.dot(m), self.fresnel.eta());
         // The change from facets to light directions: eta² |wi . m| / (wo . m + eta wi . m)².
         let jacobian = eta * eta * im.abs() / length2;
-        let g = self.smith(view[0], self.distribution.lambda(wi));
+        let least = (wo.z / om.max(1e-20)).min(-wi.z / im.abs().max(1e-20));
+        let g = self.shadowing(view, wi, m, least);
         let d = self.distribution.d(m);
         let part = if F::COLORED { 1.0 } else { self.fresnel.passed(om) };
         let density = select(self.normals, d * m.z, self.visible.d(m) * view[1] * om);
@@ -159,7 +167,7 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
             visible: Ggx(distribution.widths()),
             fresnel: F::prepare(params, 2),
             separable: select(geometry > 0.5 && geometry < 1.5, 1.0, 0.0),
-            groove: !REFRACT && geometry > 1.5,
+            groove: geometry > 1.5,
             normals,
         }
     }
@@ -213,13 +221,14 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         }
     }
 
-    /// From the distribution's table: of the reflecting half with the correlated Smith term, for the geometric mean of the widths.
-    /// Of the transmitting half it is [`Scatter::albedo`].
+    /// From the distribution's table: of the reflecting half with the correlated Smith term, for the geometric mean of the
+    /// widths. Of the transmitting half all that is not reflected, which is more than passes by what rough facets lose.
     fn top_albedo(&self, cos: f32) -> f32 {
-        if REFRACT {
-            return self.albedo(cos);
-        }
         let w = self.visible.0;
-        D::table().albedo(&self.fresnel, (w.x * w.y).sqrt(), cos)
+        let reflected = D::table().color(&self.fresnel, (w.x * w.y).sqrt(), cos);
+        if !REFRACT {
+            return reflected.max_element();
+        }
+        select(self.fresnel.eta() > 0.0, 1.0 - reflected.min_element(), 0.0)
     }
 }
