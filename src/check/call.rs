@@ -315,7 +315,9 @@ impl Checker<'_> {
             {
                 let message = format!("`{}` has no \"mode\" {mode}", spec.name);
                 let diagnostic = Diagnostic::error("E0412", value.span, message);
-                self.report(diagnostic.help("0 is the sheen of Estevez and Kulla, and the default; 1 that of Zeltner, Burley and Chiang"));
+                self.report(diagnostic.help(
+                    "0 is the sheen of Estevez and Kulla, and the default; 1 that of Zeltner, Burley and Chiang",
+                ));
             }
             let value = self.convert(value, &param_type(spec.keywords[at].kind));
             keywords.push((at as u32, value));

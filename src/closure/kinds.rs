@@ -115,7 +115,9 @@ impl Kind {
             Kind::Reflection => event::DELTA_REFLECT,
             Kind::Refraction => event::DELTA_REFRACT,
             Kind::Transparent => event::STRAIGHT,
-            Kind::Microfacet { .. } | Kind::Phong | Kind::Ward { .. } | Kind::Highlight | Kind::Lafortune => event::GLOSSY,
+            Kind::Microfacet { .. } | Kind::Phong | Kind::Ward { .. } | Kind::Highlight | Kind::Lafortune => {
+                event::GLOSSY
+            }
             _ => event::DIFFUSE,
         }
     }

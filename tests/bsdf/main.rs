@@ -3,6 +3,8 @@
 mod fits;
 mod golden;
 mod layering;
+mod model_closures;
+mod models;
 mod samplers;
 mod stress;
 mod trees;

@@ -37,10 +37,8 @@ pub(super) fn ashikhmin_shirley(surfaces: &mut Surfaces, context: &LeafContext, 
 /// `lafortune(N, U, coefficients, exponent)`.
 pub(super) fn lafortune(surfaces: &mut Surfaces, context: &LeafContext, arguments: &Arguments) -> Leaf {
     let [x, y, z] = arguments.triple(2);
-    let frame =
-        surfaces.frame(context.tree, arguments.triple(0), Some(arguments.triple(1)), context.wo, context.ng);
+    let frame = surfaces.frame(context.tree, arguments.triple(0), Some(arguments.triple(1)), context.wo, context.ng);
     let params = &[x, y, z, arguments.float(3)];
-    let request =
-        Request { kind: Kind::Lafortune, closure: arguments.spec.name, frame, params, eta: None, gate: NONE };
+    let request = Request { kind: Kind::Lafortune, closure: arguments.spec.name, frame, params, eta: None, gate: NONE };
     Leaf { parts: vec![Part { surface: surfaces.push(context.tree, request), t: 0 }], ..Leaf::default() }
 }

@@ -142,7 +142,8 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         keywords: &tree.keywords[first_keyword as usize..(first_keyword + keyword_count) as usize],
         spec,
     };
-    let tint = |index: usize| matches!(arguments.params.get(index), Some(Param::Triple(_))).then(|| arguments.triple(index));
+    let tint =
+        |index: usize| matches!(arguments.params.get(index), Some(Param::Triple(_))).then(|| arguments.triple(index));
     let mut single = |kind, params: &[Floats], eta| {
         let frame = match kind {
             Kind::Transparent => NONE,
