@@ -2,6 +2,7 @@
 
 mod fits;
 mod golden;
+mod hair;
 mod layering;
 mod model_closures;
 mod models;

@@ -82,6 +82,29 @@ fn colors_reach_the_light() {
     }
 }
 
+const HAIR: &str = "chiang_hair_bsdf(N, vector(1, 0.2, 0), color(1), color(1), color(1), 1.55, 0.1, 0.05, 0.2, 0.4, 0.5, 0.6, 0.48, color(ABSORPTION))";
+
+#[test]
+fn white_hair_loses_nothing_and_dark_hair_does() {
+    let sphere = || {
+        let up = hemisphere(64, 256, 0.6);
+        let down = up.iter().map(|(w, weight)| (Vec3::new(w.x, w.y, -w.z), *weight)).collect::<Vec<_>>();
+        [up, down].concat()
+    };
+    let mut white = lobes_of(&HAIR.replace("ABSORPTION", "0"), 1);
+    assert_eq!(names(&white, 0), ["chiang_hair_bsdf"; 4]);
+    let sum = integrate(&mut white, 1, &sphere())[0];
+    assert!(sum.iter().all(|s| (s - 1.0).abs() < 1e-3), "{sum:?}");
+    let mut samples = Samples::default();
+    for k in 0..50 {
+        let t = (k as f32 + 0.5) / 50.0;
+        white.sample(&Column3::splat(Vec3::new((7.0 * t).fract(), (3.0 * t).fract(), t), 1), &mut samples);
+        assert!((samples.weight.x[0] - 1.0).abs() < 1e-3, "every sample weighs what nothing lost weighs: {samples:?}");
+    }
+    let [r, g, b] = integrate(&mut lobes_of(&HAIR.replace("ABSORPTION", "0.1, 0.5, 3"), 1), 1, &sphere())[0];
+    assert!(r > g && g > b && b > 0.03 && r < 0.95, "{r} {g} {b}");
+}
+
 #[test]
 fn emittance_is_emitted() {
     let lobes = lobes_of(r#"0.5 * uniform_edf(color(1, 2, 3) * (1 + u), "label", "lamp")"#, 2);

@@ -149,8 +149,8 @@ fn models_agree_with_their_published_formulas() {
             agrees::<Highlight, 5>([n, ny, 0.2, 0.5, 1.0], published::highlight, 5e-5 + 2e-6 * f64::from(n.max(ny)));
         }
     }
-    for (x, y) in [(0.2, 0.2), (0.02, 0.05), (0.1, 0.7), (1.0, 0.3)] {
-        let bar = 2e-5 + 4e-6 / f64::from(x);
+    for (x, y) in [(0.2f32, 0.2), (0.02, 0.05), (0.1, 0.7), (1.0, 0.3)] {
+        let bar = 5e-5 + 4e-6 / f64::from(x.min(y));
         agrees::<Ward<false>, 2>([x, y], published::ward, bar);
         agrees::<Ward<true>, 2>([x, y], published::ward_bounded, bar);
     }
