@@ -15,7 +15,8 @@ use std::f32::consts::TAU;
 /// Degenerate cases: coefficients that are all zero scatter nothing.
 /// Departs from source: the coefficients are divided by the largest of their magnitudes, so that a lobe never gains
 /// energy; in the source their size is the strength of the lobe, here the weight of the closure is.
-/// Albedo: its mean over the azimuth by two nodes, exact to 5e-5 where |Cx| = |Cy|.
+/// Albedo: its mean over the azimuth by two nodes, exact to 5e-5 where |Cx| = |Cy|, within 0.015 elsewhere (0.3, 1, 0.8 and
+/// exponent 20).
 #[derive(Clone, Copy, Debug)]
 pub struct Lafortune {
     c: Vec3,

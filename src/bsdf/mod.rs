@@ -20,6 +20,7 @@ pub mod burley;
 pub mod cosine_power;
 pub mod eon;
 pub mod fresnel;
+pub mod hair;
 pub mod lafortune;
 pub mod lambert;
 pub mod microfacet;

@@ -12,7 +12,7 @@ macro_rules! with_source {
         use $crate::bsdf::fresnel::{Conductor, Dielectric, Schlick, Term};
         use $crate::bsdf::microfacet::{Beckmann, Blinn, Ggx, Microfacet};
         use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, fibers::Fibers, normals::ByNormals};
-        use $crate::bsdf::{ashikhmin_shirley, burley, eon, lafortune, lambert, oren_nayar, phong, velvet, ward};
+        use $crate::bsdf::{ashikhmin_shirley, burley, eon, hair, lafortune, lambert, oren_nayar, phong, velvet, ward};
         use $crate::closure::kinds::{Facets, Kind};
         macro_rules! run {
             ($model:ty) => {{
@@ -38,6 +38,10 @@ macro_rules! with_source {
             Kind::Burley => run!(burley::Burley),
             Kind::Eon => run!(eon::Eon),
             Kind::Fibers => run!(Fibers),
+            Kind::Hair { crossings: 0 } => run!(hair::Hair<0>),
+            Kind::Hair { crossings: 1 } => run!(hair::Hair<1>),
+            Kind::Hair { crossings: 2 } => run!(hair::Hair<2>),
+            Kind::Hair { .. } => run!(hair::Hair<3>),
             Kind::Phong => run!(phong::Phong),
             Kind::Ward { bounded: false } => run!(ward::Ward<false>),
             Kind::Ward { bounded: true } => run!(ward::Ward<true>),
@@ -94,6 +98,11 @@ pub enum Kind {
     Eon,
     /// Sheen of a layer of fibers.
     Fibers,
+    /// One lobe of hair.
+    Hair {
+        /// How often light crosses the fiber; 3 stands for all longer paths.
+        crossings: u8,
+    },
     /// Phong's highlight.
     Phong,
     /// Ward's highlight.
@@ -156,9 +165,12 @@ impl Kind {
             Kind::Reflection(_) => event::DELTA_REFLECT,
             Kind::Refraction(_) => event::DELTA_REFRACT,
             Kind::Transparent => event::STRAIGHT,
-            Kind::Microfacet { .. } | Kind::Phong | Kind::Ward { .. } | Kind::Highlight | Kind::Lafortune => {
-                event::GLOSSY
-            }
+            Kind::Microfacet { .. }
+            | Kind::Phong
+            | Kind::Ward { .. }
+            | Kind::Highlight
+            | Kind::Lafortune
+            | Kind::Hair { .. } => event::GLOSSY,
             _ => event::DIFFUSE,
         }
     }

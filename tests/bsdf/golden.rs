@@ -3,6 +3,7 @@
 use crate::{direction, narrow};
 use serde_json::Value;
 use std::sync::LazyLock;
+use velour::bsdf::ashikhmin_shirley::Highlight;
 use velour::bsdf::microfacet::distribution::{Distribution, Widths};
 use velour::bsdf::microfacet::{Beckmann, Ggx};
 use velour::bsdf::oren_nayar::OrenNayar;
@@ -266,6 +267,20 @@ fn oren_nayar() {
         worst = worst.max(error(model.published(wo, wi), row.get("f_rho1"), 1e-6));
     }
     hold(worst, 2e-5, "Oren-Nayar f");
+}
+
+#[test]
+fn ashikhmin_shirley_highlight() {
+    let mut worst = 0.0f64;
+    for row in rows("ashikhmin_shirley_specular") {
+        let exponents = [row.get("exponent_x") as f32, row.get("exponent_y") as f32];
+        let model = Highlight::prepare(params([exponents[0], exponents[1], 1.0, 1.0, 1.0]));
+        let wo = narrow(direction(row.get("theta_o_deg").to_radians().cos(), 0.0));
+        let wi = narrow(direction(row.get("theta_i_deg").to_radians().cos(), row.get("phi_deg").to_radians()));
+        worst = worst.max(error(model.eval(wo, wi).f_cos / wi.z, row.get("f_white"), 1e-6));
+    }
+    // A power of 1000 shows a thousandfold the rounding of the directions.
+    hold(worst, 1e-4, "Ashikhmin-Shirley f");
 }
 
 #[test]

@@ -5,6 +5,7 @@
 
 mod cloth;
 mod coat;
+mod hair;
 mod historic;
 mod materialx;
 mod microfacet;
@@ -170,6 +171,7 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::Transparent => single(Kind::Transparent, &[], None),
         Model::OrenNayar => single(Kind::OrenNayar, &[arguments.float(1)], None),
         Model::Velvet => single(Kind::Velvet, &[arguments.float(1)], None),
+        Model::Hair => hair::leaf(surfaces, context, &arguments),
         Model::OrenNayarDiffuse => materialx::oren_nayar(surfaces, context, &arguments),
         Model::BurleyDiffuse => single(Kind::Burley, &[arguments.float(2)], None),
         Model::Phong => single(Kind::Phong, &[arguments.float(1)], None),

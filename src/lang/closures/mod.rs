@@ -121,6 +121,8 @@ pub enum Model {
     OrenNayarDiffuse,
     /// `burley_diffuse_bsdf(N, albedo, roughness)`
     BurleyDiffuse,
+    /// `chiang_hair_bsdf(N, curve_direction, …)`
+    Hair,
     /// `phong(N, exponent)`
     Phong,
     /// `ward(N, T, ax, ay)`
@@ -220,7 +222,7 @@ const TANGENT: ParamSpec = param("U", ParamKind::Vector, "direction of xalpha; z
 const ETA: ParamSpec = param("eta", ParamKind::Float, "index of refraction inside over outside, > 0");
 
 /// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
-pub const NOT_YET: &[&str] = &["chiang_hair_bsdf", "anisotropic_vdf", "medium_vdf"];
+pub const NOT_YET: &[&str] = &["anisotropic_vdf", "medium_vdf"];
 
 const LABEL: ParamSpec =
     param("label", ParamKind::String, "a name for the host; velour carries it and gives it no meaning");
