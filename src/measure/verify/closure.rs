@@ -160,6 +160,7 @@ impl Subject for ClosureSubject {
         Promises {
             energy: self.promise(Claim::Energy, variant),
             reciprocity: self.promise(Claim::Reciprocity, variant),
+            layered: self.spec.params.iter().any(|param| param.kind == ParamKind::Closure),
             lossless: self.spec.lossless,
         }
     }

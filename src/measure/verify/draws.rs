@@ -65,7 +65,8 @@ fn one(samples: &Samples, evaluation: &Evaluation, lane: usize) -> Draw {
     let mut mismatch = 0.0;
     if kind == Kind::Spread && samples.event[lane] != event::NONE {
         let worth = (weight.as_dvec3() * f64::from(samples.pdf[lane]) - f_cos.as_dvec3()).abs().max_element();
-        let light = f64::from(f_cos.abs().max_element());
+        // What is on the verge of zero has no digits to compare.
+        let light = f64::from(f_cos.abs().max_element()).max(1e-20);
         let density = (f64::from(samples.pdf[lane]) - f64::from(pdf)).abs() / f64::from(pdf);
         mismatch = (worth / light).max(density);
         if mismatch.is_nan() {

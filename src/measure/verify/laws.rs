@@ -1,12 +1,14 @@
 //! The laws that hold for each view: energy, chi-square, total density, weights, coverage, stated albedo.
 
 use super::finding::{Check, Finding, Verdict};
-use super::subject::Promise;
+use super::subject::{Promise, Promises};
 use super::view::Seen;
 use crate::measure::statistics::chi_square_within;
 
-/// How far an albedo may pass 1.
+/// How far the albedo of a lobe may pass 1.
 pub const ENERGY: f64 = 1e-4;
+/// How far the albedo of layers may pass 1: as far as the evaluators that scale their bases may err.
+pub const LAYERED: f64 = 1e-3;
 /// How far the albedo of a lossless lobe may be from 1.
 pub const LOSSLESS: f64 = 1e-3;
 /// How far a weight may be, relatively, from f |cos| / pdf.
@@ -30,11 +32,13 @@ fn worst(findings: impl Iterator<Item = Finding>) -> Option<Finding> {
 }
 
 /// Furnace: a white sky must not look brighter than itself, from no direction.
-pub fn energy(seen: &[Seen], promise: Promise, lossless: bool) -> Option<Finding> {
+pub fn energy(seen: &[Seen], promises: Promises) -> Option<Finding> {
+    let Promises { energy: promise, layered, lossless, .. } = promises;
+    let most = if layered { LAYERED } else { ENERGY };
     worst(seen.iter().map(|seen| {
         let (albedo, error) = seen.largest();
         let excess = albedo - 1.0 - error;
-        let broken = albedo.is_nan() || excess > ENERGY;
+        let broken = albedo.is_nan() || excess > most;
         let lossy = lossless && !((albedo - 1.0).abs() <= LOSSLESS + error);
         let (verdict, note) = match promise {
             Promise::Waived(why) if broken => (Verdict::Waived, why.to_owned()),
@@ -48,7 +52,7 @@ pub fn energy(seen: &[Seen], promise: Promise, lossless: bool) -> Option<Finding
         let (severity, bound) = if lossless {
             ((albedo - 1.0).abs(), format!("1 +- {LOSSLESS:e}"))
         } else {
-            (albedo, format!("<= 1 + {ENERGY:e}"))
+            (albedo, format!("<= 1 + {most:e}"))
         };
         Finding { check: Check::Energy, verdict, value: albedo, severity, bound, place: at(seen), note }
     }))

@@ -136,7 +136,7 @@ pub fn examine(subject: &dyn Subject, variant: usize, effort: &Effort) -> Vec<Fi
         findings.push(nothing_scatters());
         return findings;
     }
-    findings.extend(laws::energy(&seen, promises.energy, promises.lossless));
+    findings.extend(laws::energy(&seen, promises));
     findings.extend(reciprocity::reciprocity(scatterer, promises.reciprocity, effort.pairs, random));
     findings.extend(seen.iter().filter_map(laws::chi_square));
     findings.extend(laws::density(&seen));

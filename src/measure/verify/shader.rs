@@ -91,7 +91,7 @@ impl Subject for ShaderSubject {
 
     fn promises(&self, _variant: usize) -> Promises {
         // A shader may lay and soften on purpose what is not reciprocal then; light out of nothing is never meant.
-        Promises { energy: Promise::Kept, reciprocity: Promise::Open, lossless: false }
+        Promises { energy: Promise::Kept, reciprocity: Promise::Open, layered: true, lossless: false }
     }
 
     fn scatterer(&self, variant: usize) -> Box<dyn Scatterer + '_> {

@@ -22,6 +22,8 @@ pub struct Promises {
     pub energy: Promise,
     /// f stays the same when directions are exchanged.
     pub reciprocity: Promise,
+    /// It lays one closure over another by albedos that are estimates, which may let a little more light pass.
+    pub layered: bool,
     /// Its albedo is 1.
     pub lossless: bool,
 }
