@@ -22,7 +22,7 @@ const NODES: usize = 4;
 const POINTS: usize = NODES * NODES;
 const PATCHES: usize = LANES / POINTS;
 
-/// Patches with fewer samples are halved in the middle, not at the median.
+/// Patches with more samples are refined whatever the rule says.
 const FEW: usize = 8;
 
 /// A refinement ends here: a cell is then 1e-6 of its first size.
@@ -89,7 +89,14 @@ fn from_pole(x: f64) -> f64 {
 struct Patch {
     low: Place,
     high: Place,
-    samples: Vec<Place>,
+    samples: Vec<Sample>,
+}
+
+/// A sample on the chart, with the value of the first function there.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    at: Place,
+    value: f64,
 }
 
 impl Patch {
@@ -97,21 +104,30 @@ impl Patch {
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
     }
 
+    /// Does an integral of the first function pass over what one of the samples knows of it?
+    ///
+    /// An edge of the function may hide all of it from the nodes of a rule, and from those of its quarters.
+    fn overlooked(&self, integral: f64, tolerance: f64) -> bool {
+        let cubed = |k: f64| (1.0 - k).powi(3);
+        let solid_angle = (cubed(self.low[0]) - cubed(self.high[0])) * (self.high[1] - self.low[1]);
+        self.samples.iter().any(|sample| sample.value * solid_angle > 2.0 * integral + 2.0 * tolerance)
+    }
+
     /// Where to halve it along an axis: the samples' median if there are enough, and never on an edge.
     fn middle(&mut self, axis: usize) -> f64 {
         let (low, high) = (self.low[axis], self.high[axis]);
         let half = 0.5 * (low + high);
-        if self.samples.len() < FEW {
+        if self.samples.len() < 2 {
             return half;
         }
         let at = self.samples.len() / 2;
-        let (_, median, _) = self.samples.select_nth_unstable_by(at, |a, b| a[axis].total_cmp(&b[axis]));
-        let median = median[axis];
+        let (_, median, _) = self.samples.select_nth_unstable_by(at, |a, b| a.at[axis].total_cmp(&b.at[axis]));
+        let median = median.at[axis];
         if median > low && median < high { median } else { half }
     }
 
     fn halve(mut self, axis: usize, at: f64) -> [Patch; 2] {
-        let (low, high): (Vec<Place>, Vec<Place>) = self.samples.drain(..).partition(|s| s[axis] < at);
+        let (low, high): (Vec<Sample>, Vec<Sample>) = self.samples.drain(..).partition(|s| s.at[axis] < at);
         let mut below = Patch { samples: low, ..self };
         let mut above = Patch { low: below.low, high: below.high, samples: high };
         below.high[axis] = at;
@@ -132,7 +148,7 @@ impl Patch {
         let angle = |across: f64| (1.0 - across).powi(3).clamp(-1.0, 1.0).acos();
         let (mut low, mut high, mut sin) = ([f64::MAX; 2], [f64::MIN; 2], 0.0);
         for sample in &self.samples {
-            let here = [angle(sample[0]), sample[1]];
+            let here = [angle(sample.at[0]), sample.at[1]];
             for axis in 0..2 {
                 low[axis] = low[axis].min(here[axis]);
                 high[axis] = high[axis].max(here[axis]);
@@ -160,11 +176,14 @@ pub struct Cells {
 
 impl Cells {
     /// Cells of about equally many samples, and some where there are none. No cell straddles the horizon.
-    pub fn new(chart: Chart, samples: impl Iterator<Item = Vec3>, count: usize, random: &mut Random) -> Self {
-        let mut places: Vec<Place> = samples.map(|w| chart.place(w)).collect();
+    ///
+    /// A sample is a direction with the value of the first function that will be integrated, or 0 if that is not known.
+    pub fn new(chart: Chart, samples: impl Iterator<Item = (Vec3, f64)>, count: usize, random: &mut Random) -> Self {
+        let mut places: Vec<Sample> = samples.map(|(w, value)| Sample { at: chart.place(w), value }).collect();
         // Directions of any kind keep an eye on where the sampler never goes.
         for _ in 0..(places.len() / 8).max(64) {
-            places.push([2.0 * f64::from(random.number()), PI * (2.0 * f64::from(random.number()) - 1.0)]);
+            let at = [2.0 * f64::from(random.number()), PI * (2.0 * f64::from(random.number()) - 1.0)];
+            places.push(Sample { at, value: 0.0 });
         }
         let target = (places.len() / count.max(1)).max(2);
         let mut cells = Cells { chart, patches: Vec::new(), cuts: Vec::new() };
@@ -237,6 +256,7 @@ impl Cells {
         let mut out = Integrals::new(self.len());
         let mut rule = Rule::new(self.chart);
         let mut open: Vec<(Patch, usize)> = self.patches.iter().cloned().zip(0..).collect();
+        let (mut squares, mut drift) = ([0.0; 4], [0.0; 4]);
         let mut before = rule.apply(open.iter().map(|(patch, _)| patch), &mut evaluate);
         for depth in 0..=DEEPEST {
             let mut quarters = Vec::with_capacity(4 * open.len());
@@ -246,46 +266,46 @@ impl Cells {
             let values = rule.apply(quarters.iter().map(|(patch, _)| patch), &mut evaluate);
             out.directions += LANES * quarters.len().div_ceil(PATCHES);
             let last = depth == DEEPEST || out.directions > most;
-            (open, before) = settle(&mut out, quarters, &values, &before, tolerance, last);
+            let (mut next, mut kept) = (Vec::new(), Vec::new());
+            let mut quarters = quarters.into_iter();
+            for (parts, whole) in values.chunks(4).zip(&before) {
+                let mine: Vec<(Patch, usize)> = quarters.by_ref().take(4).collect();
+                let sum: [f64; 4] = std::array::from_fn(|k| parts.iter().map(|part| part[k]).sum());
+                let change: [f64; 4] = std::array::from_fn(|k| sum[k] - whole[k]);
+                if !last && unsettled(&mine, parts, change, tolerance) {
+                    kept.extend_from_slice(parts);
+                    next.extend(mine);
+                    continue;
+                }
+                let cell = mine[0].1;
+                out.cell_errors[cell] += change[0].abs();
+                for k in 0..4 {
+                    out.cells[cell][k] += sum[k];
+                    squares[k] += change[k] * change[k];
+                    drift[k] += change[k];
+                }
+            }
+            (open, before) = (next, kept);
             if open.is_empty() {
                 break;
             }
         }
-        for error in &mut out.error {
-            *error = 2.0 * error.sqrt();
+        // Changes of either sign cancel, and what is left of those of one sign is less than they were.
+        for k in 0..4 {
+            out.error[k] = 2.0 * squares[k].sqrt() + drift[k].abs();
         }
         out
     }
 }
 
-/// Adds the quarters of settled patches to their cells and gives back those that need another round.
-fn settle(
-    out: &mut Integrals,
-    quarters: Vec<(Patch, usize)>,
-    values: &[[f64; 4]],
-    before: &[[f64; 4]],
-    tolerance: [f64; 4],
-    last: bool,
-) -> (Vec<(Patch, usize)>, Vec<[f64; 4]>) {
-    let (mut open, mut kept) = (Vec::new(), Vec::new());
-    let mut quarters = quarters.into_iter();
-    for (parts, whole) in values.chunks(4).zip(before) {
-        let sum: [f64; 4] = std::array::from_fn(|k| parts.iter().map(|part| part[k]).sum());
-        let change: [f64; 4] = std::array::from_fn(|k| (sum[k] - whole[k]).abs());
-        let mine: Vec<(Patch, usize)> = quarters.by_ref().take(4).collect();
-        if !last && (0..4).any(|k| change[k] > tolerance[k]) {
-            kept.extend_from_slice(parts);
-            open.extend(mine);
-            continue;
-        }
-        let cell = mine[0].1;
-        out.cell_errors[cell] += change[0];
-        for k in 0..4 {
-            out.cells[cell][k] += sum[k];
-            out.error[k] += change[k] * change[k];
-        }
-    }
-    (open, kept)
+/// Do the quarters of a patch need another round?
+fn unsettled(quarters: &[(Patch, usize)], values: &[[f64; 4]], change: [f64; 4], tolerance: [f64; 4]) -> bool {
+    let changes = (0..4).any(|k| change[k].abs() > tolerance[k]);
+    changes
+        || quarters
+            .iter()
+            .zip(values)
+            .any(|((quarter, _), value)| quarter.samples.len() > FEW || quarter.overlooked(value[0], tolerance[0]))
 }
 
 /// What [`Cells::integrate`] gives.
@@ -413,7 +433,7 @@ mod tests {
                         (axis + Vec3::new(offset(), offset(), offset())).normalize()
                     })
                     .collect();
-                let cells = Cells::new(Chart::new(wo), near.into_iter(), 100, &mut Random(8));
+                let cells = Cells::new(Chart::new(wo), near.into_iter().map(|w| (w, f(w))), 100, &mut Random(8));
                 let integrals = cells.integrate([2e-5; 4], 400_000, |w, out| {
                     for (lane, out) in out.iter_mut().enumerate() {
                         *out = [f(w.get(lane)); 4];
@@ -433,7 +453,7 @@ mod tests {
             assert!((chart.direction(chart.place(w)) - w).length() < 1e-6, "{w}");
         }
         assert!((chart.place(Vec3::new(-0.3, 0.4, 0.866))[1]).abs() < 1e-6);
-        let cells = Cells::new(chart, [Vec3::Z; 64].into_iter(), 8, &mut Random(3));
+        let cells = Cells::new(chart, [(Vec3::Z, 0.0); 64].into_iter(), 8, &mut Random(3));
         let sphere = cells.integrate([1e-3; 4], 0, |_, out| out.fill([1.0; 4])).total()[0];
         assert!((sphere - 4.0 * PI).abs() < 1e-12, "{sphere}");
     }

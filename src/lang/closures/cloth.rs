@@ -35,7 +35,15 @@ const SHEEN_WAIVERS: &[Waiver] = &[
         only: Some(("shadowing", "ashikhmin")),
         why: "the real-time visibility does not belong to D: albedo up to 1.7 below r = 0.21",
     },
+    VIEW_LAYERING,
 ];
+const LAYER_WAIVERS: &[Waiver] = &[VIEW_LAYERING];
+
+const VIEW_LAYERING: Waiver = Waiver {
+    claim: Claim::Reciprocity,
+    only: Some(("layering", "view")),
+    why: "the base is scaled by what the layer lets through to the viewer alone",
+};
 
 /// Sheen, and the layering it needs.
 pub(super) fn specs() -> Vec<ClosureSpec> {
@@ -65,6 +73,7 @@ pub(super) fn specs() -> Vec<ClosureSpec> {
             &[param("top", Closure, "the layer on top"), param("base", Closure, "what lies under it")],
             &[LAYERING],
             "lays one closure over another by albedo scaling",
-        ),
+        )
+        .without(LAYER_WAIVERS),
     ]
 }

@@ -25,6 +25,8 @@ pub struct Draw {
     pub wi: Vec3,
     /// f |cos| / pdf.
     pub weight: Vec3,
+    /// The density of the direction, lobes of one direction apart.
+    pub pdf: f64,
     /// What came of it.
     pub kind: Kind,
     /// By how much, relatively, weight and density differ from what the evaluation of the direction says.
@@ -73,5 +75,5 @@ fn one(samples: &Samples, evaluation: &Evaluation, lane: usize) -> Draw {
             mismatch = f64::INFINITY;
         }
     }
-    Draw { wi, weight, kind, mismatch }
+    Draw { wi, weight, pdf: f64::from(pdf), kind, mismatch }
 }

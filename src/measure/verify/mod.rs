@@ -40,6 +40,8 @@ pub struct Effort {
     pub cells: usize,
     /// Directions that the integrals of a view may take.
     pub directions: usize,
+    /// What a refinement may still change in a patch's part of the albedo.
+    pub tolerance: f64,
     /// Cosines of the views that are sampled and integrated.
     pub sampled: Vec<f64>,
     /// Cosines of the views that are only integrated.
@@ -56,7 +58,8 @@ impl Effort {
         Effort {
             samples: 100_000,
             cells: 128,
-            directions: 400_000,
+            directions: 600_000,
+            tolerance: 1e-6,
             sampled: vec![0.05, 0.25, 0.5, 0.75, 0.999],
             integrated: vec![1e-4, 1e-3, 0.01, 0.1, 0.9, 1.0],
             pairs: 16,
@@ -69,7 +72,8 @@ impl Effort {
         Effort {
             samples: 30_000,
             cells: 64,
-            directions: 60_000,
+            directions: 100_000,
+            tolerance: 4e-6,
             integrated: vec![1e-4, 0.01],
             pairs: 4,
             ..Effort::full()

@@ -13,8 +13,6 @@ use glam::Vec3;
 const SCOUTS: usize = 4096;
 /// Draws that measure lobes of one direction.
 const SINGLES: usize = 8192;
-/// What a refinement of f |cos| may still change, per patch.
-const TOLERANCE: f64 = 4e-6;
 
 /// A direction of view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,22 +88,26 @@ pub fn look(scatterer: &mut dyn Scatterer, view: View, sampled: bool, effort: &E
     let stated = scatterer.stated_albedo(0);
     let (mut scouts, mut single) = (Vec::with_capacity(SCOUTS), false);
     draw(scatterer, SCOUTS, false, random, |draw| match draw.kind {
-        Kind::Spread if draw.wi.is_finite() => scouts.push(draw.wi),
+        Kind::Spread if draw.wi.is_finite() => scouts.push((draw.wi, draw.pdf)),
         Kind::Single => single = true,
         _ => {}
     });
     let count = if sampled { effort.cells } else { effort.cells / 2 };
     let cells = Cells::new(Chart::new(wo), scouts.into_iter(), count, random);
     // A twentieth of the noise of a cell's count is precise enough for the density.
-    let density = if sampled { 0.05 / (effort.samples as f64 * count as f64).sqrt() } else { f64::INFINITY };
+    let density = if sampled { 0.05 / (effort.samples as f64 * count as f64).sqrt() } else { 1e-4 };
     let mut evaluation = Evaluation::default();
-    let integrals = cells.integrate([density, TOLERANCE, TOLERANCE, TOLERANCE], effort.directions, |wi, out| {
-        scatterer.evaluate(wi, &mut evaluation);
-        for (lane, out) in out.iter_mut().enumerate() {
-            let f_cos = evaluation.f_cos.get(lane).as_dvec3();
-            *out = [f64::from(evaluation.pdf[lane]), f_cos.x, f_cos.y, f_cos.z];
-        }
-    });
+    let integrals = cells.integrate(
+        [density, effort.tolerance, effort.tolerance, effort.tolerance],
+        effort.directions,
+        |wi, out| {
+            scatterer.evaluate(wi, &mut evaluation);
+            for (lane, out) in out.iter_mut().enumerate() {
+                let f_cos = evaluation.f_cos.get(lane).as_dvec3();
+                *out = [f64::from(evaluation.pdf[lane]), f_cos.x, f_cos.y, f_cos.z];
+            }
+        },
+    );
     let single = if single { singles(scatterer, random) } else { ([0.0; 3], 0.0) };
     let tally = sampled.then(|| tally(scatterer, &cells, effort.samples, random));
     Seen { view, integrals, single, stated, tally }
@@ -128,7 +130,7 @@ fn singles(scatterer: &mut dyn Scatterer, random: &mut Random) -> ([f64; 3], f64
 
 fn tally(scatterer: &mut dyn Scatterer, cells: &Cells, count: usize, random: &mut Random) -> Tally {
     let mut out = Tally { cells: vec![0.0; cells.len()], ..Tally::default() };
-    draw(scatterer, count, false, random, |Draw { wi, weight, kind, mismatch }| {
+    draw(scatterer, count, false, random, |Draw { wi, weight, kind, mismatch, .. }| {
         out.count += 1.0;
         if kind != Kind::Spread {
             return;
