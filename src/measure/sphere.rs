@@ -9,7 +9,6 @@
 //! twice, and an albedo of 1.00000 was taken for 1.00071, with an error that looked small.
 
 use crate::math::columns::Column3;
-use crate::math::quadrature::gauss_legendre;
 use crate::measure::statistics::Random;
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -17,7 +16,12 @@ use std::f64::consts::PI;
 /// How many directions are evaluated at once.
 pub const LANES: usize = 128;
 
-/// Nodes of the rule along each side of a patch.
+/// Nodes along each side of a patch, with their weights: Lobatto's rule of four points, exact to degree 5.
+///
+/// Its outer nodes lie on the edges of the patch, so that what reaches into it from a neighbour is seen. Gauss's inner ones
+/// overlook slivers: 0.2 % of a rough refraction, behind the step where its facets end.
+const RULE: [(f64, f64); NODES] =
+    [(0.0, 1.0 / 12.0), (0.276_393_202_250_021, 5.0 / 12.0), (0.723_606_797_749_979, 5.0 / 12.0), (1.0, 1.0 / 12.0)];
 const NODES: usize = 4;
 const POINTS: usize = NODES * NODES;
 const PATCHES: usize = LANES / POINTS;
@@ -290,9 +294,9 @@ impl Cells {
                 break;
             }
         }
-        // Changes of either sign cancel, and what is left of those of one sign is less than they were.
+        // Changes of either sign cancel; those of one sign add up, and what is still to come may be as much.
         for k in 0..4 {
-            out.error[k] = 2.0 * squares[k].sqrt() + drift[k].abs();
+            out.error[k] = 2.0 * (squares[k].sqrt() + drift[k].abs());
         }
         out
     }
@@ -338,10 +342,9 @@ impl Integrals {
     }
 }
 
-/// Gauss-Legendre on patches, many patches at a time.
+/// The rule on patches, many patches at a time.
 struct Rule {
     chart: Chart,
-    nodes: [(f64, f64); NODES],
     directions: Column3,
     densities: Vec<f64>,
     values: Vec<[f64; 4]>,
@@ -349,10 +352,8 @@ struct Rule {
 
 impl Rule {
     fn new(chart: Chart) -> Self {
-        let list = gauss_legendre(NODES, 0.0, 1.0);
-        let nodes = std::array::from_fn(|k| (list[k].x, list[k].weight));
         let directions = Column3::splat(Vec3::Z, LANES);
-        Rule { chart, nodes, directions, densities: vec![0.0; LANES], values: vec![[0.0; 4]; LANES] }
+        Rule { chart, directions, densities: vec![0.0; LANES], values: vec![[0.0; 4]; LANES] }
     }
 
     fn apply<'p>(
@@ -364,7 +365,7 @@ impl Rule {
         let mut areas = Vec::with_capacity(PATCHES);
         for patch in patches {
             let first = POINTS * areas.len();
-            let at = |axis: usize, k: usize| patch.low[axis] + self.nodes[k].0 * (patch.high[axis] - patch.low[axis]);
+            let at = |axis: usize, k: usize| patch.low[axis] + RULE[k].0 * (patch.high[axis] - patch.low[axis]);
             for k in 0..POINTS {
                 let place = [at(0, k / NODES), at(1, k % NODES)];
                 self.densities[first + k] = Chart::density(place);
@@ -392,7 +393,7 @@ impl Rule {
         for ((values, densities), area) in nodes.zip(areas.drain(..)) {
             let mut sum = [0.0; 4];
             for (k, (value, density)) in values.iter().zip(densities).enumerate() {
-                let weight = area * density * self.nodes[k / NODES].1 * self.nodes[k % NODES].1;
+                let weight = area * density * RULE[k / NODES].1 * RULE[k % NODES].1;
                 for (s, v) in sum.iter_mut().zip(value) {
                     *s += weight * v;
                 }

@@ -7,8 +7,8 @@ use crate::measure::statistics::chi_square_within;
 
 /// How far the albedo of a lobe may pass 1.
 pub const ENERGY: f64 = 1e-4;
-/// How far the albedo of layers may pass 1: as far as the evaluators that scale their bases may err.
-pub const LAYERED: f64 = 1e-3;
+/// How far the albedo of layers may pass 1: the evaluators that scale their bases err by up to 1e-3, a layer each.
+pub const LAYERED: f64 = 2e-3;
 /// How far the albedo of a lossless lobe may be from 1.
 pub const LOSSLESS: f64 = 1e-3;
 /// How far a weight may be, relatively, from f |cos| / pdf.

@@ -73,7 +73,7 @@ impl Effort {
             samples: 30_000,
             cells: 64,
             directions: 100_000,
-            tolerance: 4e-6,
+            tolerance: 2e-6,
             integrated: vec![1e-4, 0.01],
             pairs: 4,
             ..Effort::full()
