@@ -5,6 +5,7 @@ mod info;
 mod info_file;
 mod render;
 mod tree;
+mod verify;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::io::{IsTerminal, Write};
@@ -36,6 +37,8 @@ enum Command {
     Check(check::CheckArgs),
     /// Show the closure tree of a shader
     Tree(tree::TreeArgs),
+    /// Verify that closures or shaders keep energy, sample what they say, and stay finite
+    Verify(verify::VerifyArgs),
     /// List closures and functions, or what a shader declares
     Info(info::InfoArgs),
 }
@@ -100,6 +103,7 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Tree(args) => tree::run(&args),
+        Command::Verify(args) => verify::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match result {

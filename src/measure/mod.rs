@@ -1,4 +1,6 @@
 //! Measurements: what `verify` and `chart` run on, and what the tests hold.
 
 pub mod furnace;
+pub mod sphere;
 pub mod statistics;
+pub mod verify;

@@ -74,25 +74,40 @@ fn ln_gamma(mut x: f64) -> f64 {
 
 /// The chi-square probability of counts against expectations; cells expecting fewer than 5 are pooled.
 pub fn chi_square(observed: &[f64], expected: &[f64]) -> f64 {
+    chi_square_within(observed, expected, &[])
+}
+
+/// The same where expectations have errors of their own (none for cells beyond the list), which widen what is allowed.
+pub fn chi_square_within(observed: &[f64], expected: &[f64], errors: &[f64]) -> f64 {
     let (mut statistic, mut cells) = (0.0, 0.0);
-    let (mut pool_o, mut pool_e) = (0.0, 0.0);
-    for (&o, &e) in observed.iter().zip(expected) {
+    let (mut pool_o, mut pool_e, mut pool_error) = (0.0, 0.0, 0.0);
+    for (k, (&o, &e)) in observed.iter().zip(expected).enumerate() {
+        let error = errors.get(k).copied().unwrap_or(0.0);
         if e < 5.0 {
             pool_o += o;
             pool_e += e;
+            pool_error += error;
         } else {
-            statistic += (o - e) * (o - e) / e;
+            statistic += (o - e) * (o - e) / (e + error * error);
             cells += 1.0;
         }
     }
     if pool_e > 5.0 {
-        statistic += (pool_o - pool_e) * (pool_o - pool_e) / pool_e;
+        statistic += (pool_o - pool_e) * (pool_o - pool_e) / (pool_e + pool_error * pool_error);
         cells += 1.0;
-    } else if pool_o > pool_e + 10.0 * (pool_e + 1.0) {
+    } else if pool_o > pool_e + pool_error + 10.0 * (pool_e + 1.0) {
         // Samples where next to none are expected condemn at once.
         return 0.0;
     }
     if cells < 2.0 { 1.0 } else { chi_square_tail(statistic, cells - 1.0) }
+}
+
+/// A number of 64 bits made of a text, to seed random numbers with: the same on every machine.
+///
+/// Source: Fowler, Noll and Vo (FNV-1a).
+pub fn seed_of(text: &str, seed: u64) -> u64 {
+    let start = 0xcbf2_9ce4_8422_2325 ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    text.bytes().fold(start, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
 /// The level of each of `tests` tests that together err with probability `level` (Sidak 1967).

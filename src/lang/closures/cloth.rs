@@ -29,8 +29,9 @@ const MODE: ParamSpec = param(
 .tried(&[0.0, 1.0]);
 
 /// Promises that the lobe does not make in some of its variants; the figures are maxima over r 0.06..1 and cosines from 1e-4.
-const SHEEN_WAIVERS: &[Waiver] = &[SOFTENED, PUBLISHED, ASHIKHMIN];
+const SHEEN_WAIVERS: &[Waiver] = &[SOFTENED, PUBLISHED, ASHIKHMIN, VIEW_LAYERING];
 const SHEEN_BSDF_WAIVERS: &[Waiver] = &[SOFTENED, PUBLISHED, ASHIKHMIN, FIBERS];
+const LAYER_WAIVERS: &[Waiver] = &[VIEW_LAYERING];
 
 const SOFTENED: Waiver = Waiver {
     claim: Claim::Reciprocity,
@@ -51,6 +52,11 @@ const FIBERS: Waiver = Waiver {
     claim: Claim::Reciprocity,
     only: Some(("mode", "1")),
     why: "the shape and height of the lobe follow the viewer alone",
+};
+const VIEW_LAYERING: Waiver = Waiver {
+    claim: Claim::Reciprocity,
+    only: Some(("layering", "view")),
+    why: "the base is scaled by what the layer lets through to the viewer alone",
 };
 
 /// Sheen, and the layering it needs.
@@ -81,7 +87,8 @@ pub(super) fn specs() -> Vec<ClosureSpec> {
             &[param("top", Closure, "the layer on top"), param("base", Closure, "what lies under it")],
             &[LAYERING],
             "lays one closure over another by albedo scaling",
-        ),
+        )
+        .without(LAYER_WAIVERS),
         coat(),
     ]
 }
