@@ -87,10 +87,10 @@ impl CosinePowerAlbedo {
         let inverse_x = 0.5 * lobe.n + 1.0;
         let x = 1.0 / inverse_x;
         let alpha = x.sqrt();
-        let q = 0.031_399_053 + x * (0.022_146_61 + x * (0.017_279_594 - 0.002_515_131_2 * x));
+        let q = 0.031_399_053 + x * (0.022_146_61 + x * (0.017_279_593 - 0.002_515_131_1 * x));
         let inverse_f0 = (std::f32::consts::PI * (1.0 + x * (-0.75 + x * q))).sqrt() / alpha;
         let n1 = 0.163_356_32 + x * (-0.136_234_49 + x * 0.172_222_9);
-        let e0 = 0.358_986_72 + x * (0.210_598_09 + x * 0.149_795_94);
+        let e0 = 0.358_986_7 + x * (0.210_598_1 + x * 0.149_795_93);
         let e1 = 0.112_074_27 + x * (-0.071_527_1 - x * 0.031_667_63);
         let m = (1.0 - alpha) * (1.0 + alpha);
         CosinePowerAlbedo { inverse_x, half_f0: 0.5 / inverse_f0, n1, d: [1.0 + n1, n1 + m * e0, m * e1] }

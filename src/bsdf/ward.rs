@@ -19,7 +19,7 @@ pub const MIN_WIDTH: f32 = 1e-3;
 /// Domain: widths (root mean square slopes times the square root of 2) 1e-3..1, limited to it. Gives: f in 1/sr, reciprocal.
 /// Degenerate cases: opposite directions in the horizon give 0.
 /// Energy: the bounded form reflects at most 1. The published one loses light toward grazing when narrow, and gains
-/// without limit when wide (6.7 at a width of 0.8 and a cosine of 1e-4): its weights grow as 1 / sqrt(co).
+/// without limit when wide (6.7 at a width of 0.7 and a cosine of 1e-4): its weights grow as 1 / sqrt(co).
 /// Albedo: own fits, cut at 1; error 0.008 bounded, 0.012 published against quadrature at equal widths. Unequal ones take the
 /// root mean square, which for a ratio of 4 errs by up to 0.06 from the mean over the azimuth.
 #[derive(Clone, Copy, Debug)]

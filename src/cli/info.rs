@@ -59,7 +59,7 @@ fn header_functions(args: &InfoArgs) -> Result<Vec<FunctionDecl>, Failure> {
 fn everything(table: &ClosureTable, header: &[FunctionDecl]) -> String {
     let mut out = String::from("closures:\n");
     for spec in &table.specs {
-        out += &format!("    {}\n        {}\n", closure_head(spec), spec.doc);
+        out += &format!("    {}\n        {}\n", wrapped(&closure_head(spec)), wrapped(spec.doc));
     }
     out += &format!("\nclosures that are known but not run yet:\n{}", columns(closures::NOT_YET));
     let names = function_names(header);
@@ -76,6 +76,21 @@ fn function_names(header: &[FunctionDecl]) -> BTreeSet<&str> {
         names.insert(name);
     }
     names
+}
+
+/// A text broken at spaces into lines of about a hundred characters, the later ones indented.
+fn wrapped(text: &str) -> String {
+    let (mut out, mut width) = (String::new(), 0);
+    for word in text.split(' ') {
+        if width + word.len() > 100 {
+            out += "\n           ";
+            width = 0;
+        }
+        out += if out.is_empty() { "" } else { " " };
+        out += word;
+        width += word.len() + 1;
+    }
+    out
 }
 
 /// Names in lines of at most a hundred characters.

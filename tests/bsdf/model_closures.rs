@@ -62,6 +62,28 @@ fn every_closure_gives_its_lobes() {
 }
 
 #[test]
+fn every_lane_gives_the_same_bits() {
+    // Whole vectors and what is left over of them run different code.
+    const LANES: usize = 37;
+    let hair = HAIR.replace("ABSORPTION", "0.1, 0.5, 3");
+    for text in CLOSURES.iter().map(|(text, _)| *text).chain([hair.as_str()]) {
+        let mut lobes = lobes_of(text, LANES);
+        let mut out = Evaluation::default();
+        for wi in [narrow(direction(0.4, 3.0)), narrow(direction(0.01, 1.0)), narrow(direction(-0.4, 2.0))] {
+            lobes.evaluate(&Column3::splat(wi, LANES), &mut out);
+            assert!((1..LANES).all(|k| out.f_cos.get(k) == out.f_cos.get(0) && out.pdf[k] == out.pdf[0]), "{text}");
+        }
+        let mut samples = Samples::default();
+        for k in 0..20 {
+            let t = (k as f32 + 0.5) / 20.0;
+            lobes.sample(&Column3::splat(Vec3::new((7.0 * t).fract(), t, (3.0 * t).fract()), LANES), &mut samples);
+            assert!((1..LANES).all(|k| samples.wi.get(k) == samples.wi.get(0)), "{text}");
+            assert!((1..LANES).all(|k| samples.weight.get(k) == samples.weight.get(0)), "{text}");
+        }
+    }
+}
+
+#[test]
 fn colors_reach_the_light() {
     for (text, _) in CLOSURES.iter().filter(|(text, _)| text.contains("color(0.8, 0.5, 0.3)")) {
         let mut lobes = lobes_of(text, 1);
