@@ -1,6 +1,5 @@
-//! Hair: each lobe against the published formulas, densities over the whole sphere, no light lost without absorption.
+//! Hair: each lobe against the published formulas, no light lost without absorption.
 
-use crate::samplers::follows;
 use crate::{SEED, direction, narrow};
 use glam::Vec3;
 use std::f64::consts::{PI, TAU};
@@ -151,17 +150,6 @@ fn nothing_is_lost_without_absorption() {
                 assert!((part - albedo).abs() < 1e-5, "{c} {ior}: {parts:?} {albedos:?}");
             }
         }
-    }
-}
-
-#[test]
-fn samples_follow_their_densities() {
-    for (v, s, cuticle) in [(0.05, 0.3, 0.48), (0.6, 0.8, 0.7)] {
-        let fiber = params([1.55, v, s, cuticle, 0.1, 0.2, 0.3, 1.0, 1.0, 1.0]);
-        follows(&Hair::<0>::prepare(fiber), "hair, R");
-        follows(&Hair::<1>::prepare(fiber), "hair, TT");
-        follows(&Hair::<2>::prepare(fiber), "hair, TRT");
-        follows(&Hair::<3>::prepare(fiber), "hair, longer paths");
     }
 }
 

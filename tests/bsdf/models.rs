@@ -1,6 +1,5 @@
 //! The models beside microfacets and sheen: against double precision, against themselves exchanged, and at their edges.
 
-use crate::samplers::follows;
 use crate::{SEED, direction, narrow};
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -353,23 +352,6 @@ fn edges_give_finite_light() {
     let none = Lafortune::prepare(params([0.0, 0.0, 0.0, 0.0]));
     assert_eq!(none.eval(Vec3::Z, Vec3::Z).f_cos, 0.0);
     assert_eq!(none.albedo(0.5), 0.0);
-}
-
-#[test]
-fn samples_follow_their_densities() {
-    for n in [0.0, 5.0, 60.0] {
-        follows(&Phong::prepare(params([n])), "phong");
-        follows(&Lafortune::prepare(params([0.9, -0.6, 1.0, n])), "lafortune");
-        follows(&Highlight::prepare(params([n, 20.0, 0.2, 0.2, 0.2])), "ashikhmin_shirley");
-    }
-    for (x, y) in [(0.3, 0.3), (0.2, 0.7)] {
-        follows(&Ward::<false>::prepare(params([x, y])), "ward");
-        follows(&Ward::<true>::prepare(params([x, y])), "ward, bounded");
-    }
-    follows(&Eon::prepare(params([0.5, 1.0, 0.5, 0.5])), "eon");
-    for r in [0.1, 0.3, 1.0] {
-        follows(&Fibers::prepare(params([r])), "fibers");
-    }
 }
 
 /// The largest errors of the albedos of unequal widths, whose azimuth an albedo cannot know; the documents state them.
