@@ -8,6 +8,7 @@
 //! range of sqrt(eta² - 1), which takes some sixty hats; and instead of a table for each Fresnel term, which a textured
 //! index would need by the lane. Axes: cubic interpolation in log alpha + 6 alpha and in log(1 + cos / (0.04 alpha)), whose
 //! range is scaled to the width, because masking depends on cos / alpha near the horizon and on alpha itself elsewhere.
+//! An albedo takes about 95 ns, three times what evaluating the lobe and its base takes: a lane without a layer pays nothing.
 
 use super::distribution::{Distribution, Widths};
 use super::ggx::Ggx;
@@ -56,7 +57,7 @@ fn cosine_axis(cos: f32, alpha: f32) -> f32 {
 }
 
 impl FacetTable {
-    /// Integrates the distribution at all places of the table; takes some 30 ms on one thread.
+    /// Integrates the distribution at all places of the table; takes some 40 to 60 ms on one thread.
     pub fn build<D: Distribution>() -> Self {
         let (along, across) = (gauss_legendre(20, 0.0, 1.0), gauss_legendre(14, 0.0, 1.0));
         let mut cells = Vec::with_capacity(WIDTHS * COSINES);
