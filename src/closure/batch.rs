@@ -253,6 +253,7 @@ pub fn albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut 
 }
 
 /// [`albedo_lanes`] of what lies on top of something: as exact as the model knows it.
+#[multiversion(targets("x86_64+avx2"))]
 pub fn top_albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut [f32]) {
     let (cos, source) = (&cos[..out.len()], source.narrow(out.len()));
     for (i, value) in out.iter_mut().enumerate() {

@@ -8,11 +8,13 @@
 //! range of sqrt(eta² - 1), which takes some sixty hats; and instead of a table for each Fresnel term, which a textured
 //! index would need by the lane. Axes: cubic interpolation in log alpha + 6 alpha and in log(1 + cos / (0.04 alpha)), whose
 //! range is scaled to the width, because masking depends on cos / alpha near the horizon and on alpha itself elsewhere.
+//! An albedo takes about 95 ns, three times what evaluating the lobe and its base takes: a lane without a layer pays nothing.
 
 use super::distribution::{Distribution, Widths};
 use super::ggx::Ggx;
-use crate::bsdf::fresnel::Fresnel;
+use crate::bsdf::fresnel::{Fresnel, limited};
 use crate::bsdf::power::{exp2, log2};
+use crate::bsdf::select;
 use crate::math::quadrature::{Node, gauss_legendre};
 use glam::Vec3;
 use std::f32::consts::LN_2;
@@ -55,7 +57,7 @@ fn cosine_axis(cos: f32, alpha: f32) -> f32 {
 }
 
 impl FacetTable {
-    /// Integrates the distribution at all places of the table; takes some 30 ms on one thread.
+    /// Integrates the distribution at all places of the table; takes some 40 to 60 ms on one thread.
     pub fn build<D: Distribution>() -> Self {
         let (along, across) = (gauss_legendre(20, 0.0, 1.0), gauss_legendre(14, 0.0, 1.0));
         let mut cells = Vec::with_capacity(WIDTHS * COSINES);
@@ -84,6 +86,7 @@ impl FacetTable {
     /// The albedo of a width at a cosine under a Fresnel term.
     ///
     /// Domain: alpha 1e-3..1, cosine 0..1. Gives: 0..1.
+    #[inline(always)]
     pub fn color<F: Fresnel>(&self, fresnel: &F, alpha: f32, cos: f32) -> Vec3 {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
         let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
@@ -96,13 +99,23 @@ impl FacetTable {
                 }
             }
         }
-        let mut color = Vec3::ZERO;
+        // Plain loops over arrays, so that the Fresnel terms of one cell are computed side by side.
+        let (mut at, mut color) = ([0.0; NODES], Vec3::ZERO);
         for k in 0..NODES {
             let weight = sum[NODES + k];
-            let away = if weight > 1e-9 { sum[k] / weight } else { 0.0 };
-            let at = (cos + away).clamp(0.0, 1.0);
-            let reflected = if F::COLORED { fresnel.color(at) } else { Vec3::splat(fresnel.largest(at)) };
-            color += reflected * weight;
+            let away = select(weight > 1e-9, sum[k] / weight, 0.0);
+            at[k] = limited(cos + away, 0.0, 1.0);
+        }
+        if F::COLORED {
+            for k in 0..NODES {
+                color += fresnel.color(at[k]) * sum[NODES + k];
+            }
+        } else {
+            let mut reflected = [0.0; NODES];
+            for k in 0..NODES {
+                reflected[k] = fresnel.largest(at[k]) * sum[NODES + k];
+            }
+            color = Vec3::splat(reflected.iter().sum());
         }
         color.clamp(Vec3::ZERO, Vec3::ONE)
     }
@@ -111,6 +124,7 @@ impl FacetTable {
 /// The four places around `place` (0..1) of so many, and their weights.
 ///
 /// Source: Catmull and Rom 1974; at the ends a straight line goes on.
+#[inline(always)]
 fn cubic(place: f32, count: usize) -> ([usize; 4], [f32; 4]) {
     let x = (place * (count - 1) as f32).clamp(0.0, (count - 1) as f32);
     let i = (x as usize).min(count - 2);

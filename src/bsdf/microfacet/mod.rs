@@ -9,7 +9,9 @@
 //! unbounded at grazing views. The latter is kept as [`Sampling::Normals`], to be compared with.
 //!
 //! Decision (2026-11-22): the shadowing term and the way of sampling are one parameter, because the three terms share the
-//! two Lambdas and the lane loop blends them, instead of types, of which there are fifteen already.
+//! two Lambdas and the lane loop blends them, instead of types, of which there are fifteen already. Measured on a thousand
+//! lanes, AVX2: GGX is evaluated in 5.6 ns as before and sampled in 20.4 instead of 19.5 ns, Beckmann in 13.9 instead of
+//! 12.2 and 25.8 instead of 24.6 ns; Blinn takes 10.7 and 26.0 ns, a GGX metal 9.0 and 23.5 ns.
 
 pub mod albedo;
 pub mod beckmann;
@@ -213,7 +215,8 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         let width = widths.x.max(widths.y);
         let at = |c: f32| if REFRACT { self.fresnel.passed(c) } else { self.fresnel.largest(c) };
         let tilted = |by: f32| at((cos + by * width).clamp(1e-3, 1.0));
-        let part = 0.25 * (tilted(-1.0) + tilted(1.0)) + 0.5 * at(cos);
+        // One angle must do for colors, which cost three times as much.
+        let part = if F::COLORED { tilted(0.3) } else { 0.25 * (tilted(-1.0) + tilted(1.0)) + 0.5 * at(cos) };
         if REFRACT {
             select(self.fresnel.eta() > 0.0, part.clamp(0.03, 0.98), 0.0)
         } else {
@@ -223,6 +226,12 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
 
     /// From the distribution's table: of the reflecting half with the correlated Smith term, for the geometric mean of the
     /// widths. Of the transmitting half all that is not reflected, which is more than passes by what rough facets lose.
+    ///
+    /// Error, measured over widths 1e-3..1 and cosines 1e-4..1: reflecting, from outside 9e-4 (indices 1.02 to 2.5, metals,
+    /// Schlick), from inside glass near total reflection 0.11; widths of ratio 2 up to 0.08, of ratio 4 up to 0.16, because
+    /// the azimuth is not known here. Separable shadowing reflects up to 0.35 less than the table says, so a base loses; grooves up to 0.22
+    /// more, so a white base under a rough top of grooves may gain that. Transmitting: up to 0.33 too much at width 1.
+    #[inline(always)]
     fn top_albedo(&self, cos: f32) -> f32 {
         let w = self.visible.0;
         let reflected = D::table().color(&self.fresnel, (w.x * w.y).sqrt(), cos);

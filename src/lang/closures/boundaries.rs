@@ -1,6 +1,6 @@
 //! Boundaries between media, smooth and rough: mirrors, glass, metals.
 
-use super::{ClosureSpec, ETA, Model, NORMAL, ParamKind, ParamSpec, TANGENT, Waiver, choice, param, spec};
+use super::{ClosureSpec, ETA, Model, NORMAL, ParamKind, ParamSpec, TANGENT, choice, param, spec};
 
 const DISTRIBUTION: ParamSpec = choice(
     "distribution",
@@ -34,9 +34,6 @@ const ABSORPTION: ParamSpec = param("absorption", ParamKind::Color, "absorption 
     .left_out(0.0, "absorption inside the medium");
 const DISPERSION: ParamSpec =
     param("dispersion", ParamKind::Float, "inverse Abbe number").left_out(0.0, "the colors of dispersion");
-
-/// Promises that no boundary makes in some of its variants.
-const WAIVERS: &[Waiver] = &[];
 
 /// Boundaries between media.
 pub(super) fn specs() -> Vec<ClosureSpec> {
@@ -97,31 +94,27 @@ pub(super) fn specs() -> Vec<ClosureSpec> {
             &microfacet,
             &[GEOMETRY, SAMPLING],
             "rough dielectric reflection and refraction",
-        )
-        .without(WAIVERS),
+        ),
         spec(
             "dielectric_bsdf",
             Model::DielectricBsdf,
             &dielectric,
             &[GEOMETRY, SAMPLING, THICKNESS, FILM_IOR, ABSORPTION, DISPERSION],
             "boundary of glass, water and the like, rough or smooth, reflecting and refracting",
-        )
-        .without(WAIVERS),
+        ),
         spec(
             "conductor_bsdf",
             Model::ConductorBsdf,
             &conductor,
             &[GEOMETRY, SAMPLING, THICKNESS, FILM_IOR],
             "metal of a complex index of refraction, rough or smooth",
-        )
-        .without(WAIVERS),
+        ),
         spec(
             "generalized_schlick_bsdf",
             Model::GeneralizedSchlickBsdf,
             &schlick,
             &[GEOMETRY, SAMPLING, THICKNESS, FILM_IOR],
             "rough or smooth boundary whose reflectance runs from f0 to f90",
-        )
-        .without(WAIVERS),
+        ),
     ]
 }

@@ -219,7 +219,8 @@ const fn choice(name: &'static str, choices: &'static [&'static str], doc: &'sta
 
 const NORMAL: ParamSpec = param("N", ParamKind::Normal, "shading normal, unit length");
 const TANGENT: ParamSpec = param("U", ParamKind::Vector, "direction of xalpha; zero for any");
-const ETA: ParamSpec = param("eta", ParamKind::Float, "index of refraction inside over outside, > 0");
+const ETA: ParamSpec =
+    param("eta", ParamKind::Float, "index of refraction inside over outside, > 0").tried(&[1.5, 1.05, 0.7, 2.5, 0.0]);
 
 /// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
 pub const NOT_YET: &[&str] = &["anisotropic_vdf", "medium_vdf"];
