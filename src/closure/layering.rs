@@ -296,7 +296,7 @@ fn top_albedo(layer: &Layer, surfaces: &Surfaces, side: Side, values: &[f32], ou
 }
 
 /// The albedo of a surface that lies on top of something: [`surface_albedo`], from tables where that is an estimate.
-fn covering_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &mut [f32]) {
+pub fn covering_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &mut [f32]) {
     if !matches!(surface.kind, Kind::Microfacet { .. }) {
         return surface_albedo(surfaces, surface, side, out);
     }

@@ -39,7 +39,7 @@ pub struct LobeInfo {
     pub closure: &'static str,
     /// Its weight, without the scale of layers.
     pub weight: [f32; 3],
-    /// Its directional albedo toward the viewer, without weight.
+    /// Its directional albedo toward the viewer, without weight, as a layer takes it from its base.
     pub albedo: f32,
     /// How many layers lie over it.
     pub depth: u32,
@@ -208,7 +208,7 @@ impl Lobes {
                 continue;
             }
             let surface = &self.surfaces.list[lobe.surface as usize];
-            super::layering::surface_albedo(&self.surfaces, surface, super::layering::Side::View, &mut albedo);
+            super::layering::covering_albedo(&self.surfaces, surface, super::layering::Side::View, &mut albedo);
             infos.push(LobeInfo {
                 closure: surface.closure,
                 weight,

@@ -1,6 +1,6 @@
 //! Scenes whose answer is a formula.
 
-use super::materials::{middle, picture};
+use super::materials::{middle, picture, picture_with};
 use velour::exec::Report;
 use velour::render::LightStrategy;
 
@@ -36,6 +36,25 @@ fn a_closed_sphere_sums_its_series() {
     for lights in [LightStrategy::Combined, LightStrategy::ScatteringOnly, LightStrategy::LightsOnly] {
         let mean = picture(scene, |s| (s.samples, s.lights) = (64, lights)).mean()[0];
         assert!((mean - 1.0).abs() < 4e-3, "{lights:?}: {mean}");
+    }
+}
+
+/// The same for every lobe that loses nothing and lets nothing through, diffuse, rough or a mirror.
+#[test]
+fn a_closed_sphere_sums_its_series_for_every_lossless_lobe() {
+    for lobe in [
+        "diffuse(N)",
+        "reflection(N, 0)",
+        "oren_nayar_diffuse_bsdf(N, color(1), 0.6, \"energy_compensation\", 1)",
+        "subsurface_bssrdf(N, color(1), color(1), 0)",
+        "0.5 * diffuse(N) + 0.5 * reflection(N, 0)",
+        "sheen(diffuse(N), N, color(1), 0.3, \"layering\", \"view\")",
+    ] {
+        let shader = format!("surface it() {{ Ci = 0.5 * emission() + 0.5 * ({lobe}); }}");
+        let scene = r#"<World><Camera eye="0.3,0.2,0.1"/><ShaderGroup>shader it l1;</ShaderGroup>
+          <Sphere center="0,0,0" radius="1"/></World>"#;
+        let mean = picture_with(scene, &[&shader], |s| s.samples = 64).mean()[0];
+        assert!((mean - 1.0).abs() < 4e-3, "{lobe}: {mean}");
     }
 }
 

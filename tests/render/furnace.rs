@@ -2,6 +2,7 @@
 
 use super::materials::picture_with;
 use velour::closure::Layering;
+use velour::lang::closures::{ClosureTable, ParamKind, ParamSpec};
 use velour::render::{Image, Settings};
 
 /// The five roughnesses of figure 1 and one at the sharp end of the fits.
@@ -73,10 +74,40 @@ fn what_loses_nothing_is_white() {
         ("half and half", "Ci = 0.5 * diffuse(N) + 0.5 * translucent(N);"),
         ("glass", "float e = backfacing() ? 1 / 1.5 : 1.5; Ci = reflection(N, e) + refraction(N, e);"),
         ("smooth microfacets", "float e = backfacing() ? 1 / 1.5 : 1.5; Ci = microfacet(\"ggx\", N, 0.0, e, 2);"),
+        (
+            "smooth glass of MaterialX",
+            "float e = backfacing() ? 1 / 1.5 : 1.5;
+             Ci = dielectric_bsdf(N, vector(0), color(1), color(1), 0.0, 0.0, e, \"ggx\");",
+        ),
+        ("rough diffuse", "Ci = oren_nayar_diffuse_bsdf(N, color(1), 0.7, \"energy_compensation\", 1);"),
+        ("a coat of air", "Ci = coat(diffuse(N), N, 0.0, 1.0, color(0), 1.0);"),
+        ("a silver coat", "Ci = coat(diffuse(N), N, 0.0, 0.0, color(0), 1.0);"),
+        ("a white sheen by the view", "Ci = sheen(diffuse(N), N, color(1), 0.4, \"layering\", \"view\");"),
     ];
     for (name, body) in cases {
         let mean = over_sphere(&furnace(&format!("surface it() {{ {body} }}"), |_| ()));
         assert!((mean - 1.0).abs() <= 2e-3, "{name}: {mean}");
+    }
+}
+
+/// Every closure that promises to lose nothing vanishes in the white sky, whatever its other parameters.
+#[test]
+fn every_lossless_closure_is_white() {
+    let table = ClosureTable::standard();
+    let lossless: Vec<_> = table.specs.iter().filter(|spec| spec.lossless).collect();
+    assert!(lossless.len() >= 7, "{}", lossless.len());
+    for spec in lossless {
+        let argument = |param: &ParamSpec| match param.kind {
+            ParamKind::Normal => "N".to_owned(),
+            ParamKind::Color => "color(1)".to_owned(),
+            ParamKind::Vector => "vector(1, 0, 0)".to_owned(),
+            _ => format!("{:?}", param.sweep.first().copied().unwrap_or(0.5)),
+        };
+        let arguments: Vec<String> = spec.params.iter().map(argument).collect();
+        let shader = format!("surface it() {{ Ci = {}({}); }}", spec.name, arguments.join(", "));
+        let mean = over_sphere(&furnace(&shader, |_| ()));
+        // What passes straight through leaves no cover to take the mean over.
+        assert!(mean.is_nan() || (mean - 1.0).abs() <= 2e-3, "{shader}: {mean}");
     }
 }
 
