@@ -1,5 +1,6 @@
 //! Measurements: what `verify` and `chart` run on, and what the tests hold.
 
+pub mod chart;
 pub mod furnace;
 pub mod sphere;
 pub mod statistics;

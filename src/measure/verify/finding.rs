@@ -118,11 +118,11 @@ impl Report {
     pub fn worst(&self) -> Vec<Line> {
         let mut out: Vec<Line> = Vec::new();
         for line in &self.lines {
-            let waived = line.finding.verdict == Verdict::Waived;
+            // A promise that is not made has a line for each reason.
+            let waiver = |line: &Line| (line.finding.verdict == Verdict::Waived).then(|| line.finding.note.clone());
+            let mine = waiver(line);
             let same = |other: &&mut Line| {
-                other.subject == line.subject
-                    && other.finding.check == line.finding.check
-                    && (other.finding.verdict == Verdict::Waived) == waived
+                other.subject == line.subject && other.finding.check == line.finding.check && waiver(other) == mine
             };
             let Some(kept) = out.iter_mut().rev().find(same) else {
                 out.push(line.clone());
