@@ -117,12 +117,12 @@ pub trait Scatter: Copy {
     }
     /// Directional albedo at this cosine (of its largest component), an estimate that each model documents.
     fn albedo(&self, cos: f32) -> f32;
-    /// The albedo at this cosine as exact as the model knows it: what a layer's top takes from its base.
+    /// The albedo of a unit local direction as exact as the model knows it: what a layer's top takes from its base.
     #[inline(always)]
-    fn top_albedo(&self, cos: f32) -> f32 {
-        self.albedo(cos)
+    fn top_albedo(&self, w: Vec3) -> f32 {
+        self.albedo(w.z.abs().min(1.0))
     }
-    /// Mean of [`Scatter::top_albedo`] over the hemisphere, weighted by the cosine.
+    /// Mean of [`Scatter::top_albedo`] over the hemisphere, weighted by the cosine, at an azimuth between x and y.
     ///
     /// Source: Gauss-Legendre of 8 nodes in the cube root of the cosine, exact for albedos of degree 10 in it.
     #[inline(always)]
@@ -131,11 +131,18 @@ pub trait Scatter: Copy {
         for (x, weight) in GAUSS {
             for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
                 let t2 = t * t;
-                sum += 3.0 * weight * t2 * t2 * t * self.top_albedo(t2 * t);
+                sum += 3.0 * weight * t2 * t2 * t * self.top_albedo(between(t2 * t));
             }
         }
         sum
     }
+}
+
+/// The direction of a cosine halfway between the x and the y axis.
+#[inline(always)]
+pub(crate) fn between(cos: f32) -> Vec3 {
+    let side = (0.5 * (1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
+    Vec3::new(side, side, cos)
 }
 
 /// One lane's choice between two numbers, which compiles to a blend.

@@ -252,12 +252,12 @@ pub fn albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut 
     }
 }
 
-/// [`albedo_lanes`] of what lies on top of something: as exact as the model knows it.
+/// The albedo of what lies on top of something for local directions, as exact as the model knows it.
 #[multiversion(targets("x86_64+avx2"))]
-pub fn top_albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut [f32]) {
-    let (cos, source) = (&cos[..out.len()], source.narrow(out.len()));
+pub fn top_albedo_lanes<M: Scatter, S: Source<M>>(source: S, w: Triples<'_>, out: &mut [f32]) {
+    let (w, source) = (w.narrow(out.len()), source.narrow(out.len()));
     for (i, value) in out.iter_mut().enumerate() {
-        *value = source.at(i).top_albedo(cos[i].abs().min(1.0));
+        *value = source.at(i).top_albedo(w.at(i));
     }
 }
 

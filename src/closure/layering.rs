@@ -5,14 +5,15 @@
 //! as its own top plus what that lets through of its base. The sum is clamped to 1. The albedo of each leaf is the
 //! one its model documents; transmitting lobes count too, as what they pass has left the base's light.
 
-use super::batch::{LayerColumns, albedo_lanes, average_lanes, layer_lanes, top_albedo_lanes};
+use super::batch::{LayerColumns, Triples, albedo_lanes, average_lanes, layer_lanes, top_albedo_lanes};
 use super::kinds::Kind;
 use super::kinds::with_source;
 use super::media::Media;
 use super::settings::Layering;
 use super::surfaces::{NONE, Surface, Surfaces};
-use crate::bsdf::GAUSS;
 use crate::bsdf::specular::{reflection, refraction};
+use crate::bsdf::{GAUSS, between};
+use crate::math::columns::Column3;
 use glam::Vec3;
 use std::borrow::Cow;
 
@@ -300,8 +301,17 @@ pub fn covering_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: 
     if !matches!(surface.kind, Kind::Microfacet { .. }) {
         return surface_albedo(surfaces, surface, side, out);
     }
-    let cos = cosines(surfaces, surface, side);
-    with_source!(surfaces, surface, |M, source| top_albedo_lanes::<M, _>(source, &cos, out));
+    let frame = &surfaces.frames()[surface.frame as usize];
+    let fixed;
+    let w = match side {
+        Side::View => &frame.wo,
+        Side::Light => &frame.wi,
+        Side::Fixed(cos) => {
+            fixed = Column3::splat(between(cos), surfaces.lanes);
+            &fixed
+        }
+    };
+    with_source!(surfaces, surface, |M, source| top_albedo_lanes::<M, _>(source, Triples::of(w), out));
 }
 
 /// The cosines of a direction to a surface's normal.

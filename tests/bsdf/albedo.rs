@@ -121,7 +121,7 @@ const COSINES: [f64; 12] = [1e-4, 1.3e-3, 4e-3, 0.023, 0.05, 0.09, 0.16, 0.41, 0
 
 fn errors<D: Facets>() -> Vec<f64> {
     let (terms, start) = (terms(), Instant::now());
-    let table = FacetTable::build::<D>();
+    let table = FacetTable::build::<D>(Geometry::Smith);
     println!("{} table: {:.0} ms", D::NAME, start.elapsed().as_secs_f64() * 1e3);
     let mut worst = vec![(0.0f64, 0.0, 0.0); terms.len()];
     for alpha in WIDTHS {
@@ -156,56 +156,56 @@ fn tops_know_their_albedo() {
     }
 }
 
-/// What the table leaves out: unequal widths, and other shadowing terms, as the largest difference.
+/// Unequal widths, for which the table of equal ones stands in, with their width in the viewer's azimuth.
 #[test]
-fn limits_of_the_table_are_as_documented() {
-    let table = FacetTable::build::<Ggx>();
-    let glass = Dielectric::prepare(params([1.5]), 0);
-    for ratio in [2.0f32, 4.0, 10.0] {
+fn tops_of_unequal_widths_err_as_documented() {
+    for (ratio, most) in [(2.0f32, [0.075, 0.02]), (4.0, [0.175, 0.045]), (10.0, [0.37, 0.07])] {
         let mut worst = (0.0f64, 0.0);
         for alpha in [0.03f32, 0.1, 0.3] {
             let w = Widths { x: alpha * ratio.sqrt(), y: alpha / ratio.sqrt() };
+            let model = |eta: f32| Microfacet::<Ggx, Dielectric, false>::prepare(params([w.x, w.y, eta]));
             for cos in [0.01, 0.05, 0.2, 0.5, 0.9] {
                 for azimuth in [0.0f64, 0.4, 0.8, 1.2, 1.57] {
                     let wo = crate::narrow(crate::direction(cos, azimuth));
+                    let glass = Dielectric::prepare(params([1.5]), 0);
                     let (mut one, mut fresnel) = (0.0, 0.0);
                     integral::<Ggx>(w, wo, (160, 200), std::f64::consts::TAU, |om, weight| {
                         one += weight;
                         fresnel += weight * f64::from(glass.largest(om as f32));
                     });
-                    let mirror = Dielectric::prepare(params([0.0]), 0);
-                    worst.0 = f64::max(worst.0, (f64::from(table.color(&mirror, alpha, cos as f32).x) - one).abs());
-                    worst.1 = f64::max(worst.1, (f64::from(table.color(&glass, alpha, cos as f32).x) - fresnel).abs());
+                    worst.0 = f64::max(worst.0, (f64::from(model(0.0).top_albedo(wo)) - one).abs());
+                    worst.1 = f64::max(worst.1, (f64::from(model(1.5).top_albedo(wo)) - fresnel).abs());
                 }
             }
         }
-        println!("widths of ratio {ratio}: mirror {:.3}, eta 1.5 {:.3}", worst.0, worst.1);
+        println!("widths of ratio {ratio}: mirror {:.4}, eta 1.5 {:.4}", worst.0, worst.1);
+        assert!(worst.0 < most[0] && worst.1 < most[1], "ratio {ratio}: {worst:?}");
     }
-    let mut worst = [[0.0f64; 2]; 2];
-    for alpha in [0.1f32, 0.3, 0.6, 1.0] {
-        for (k, geometry) in [Geometry::Separable, Geometry::VGroove].into_iter().enumerate() {
-            for cos in [0.01, 0.05, 0.2, 0.5, 0.9] {
-                let model = Microfacet::<Ggx, Dielectric, false>::prepare(params([
-                    alpha,
-                    alpha,
-                    0.0,
-                    method(geometry, Sampling::Visible),
-                ]));
+}
+
+/// The other shadowing terms have tables of their own.
+#[test]
+fn tops_know_their_shadowing() {
+    fn worst<D: Distribution>(geometry: Geometry) -> f64 {
+        let mut worst = 0.0f64;
+        for alpha in [0.03f32, 0.1, 0.3, 0.6, 1.0] {
+            for (eta, cos) in [0.0, 1.5].into_iter().flat_map(|eta| [0.01, 0.05, 0.2, 0.5, 0.9].map(|cos| (eta, cos))) {
+                let p = params([alpha, alpha, eta, method(geometry, Sampling::Visible)]);
+                let model = Microfacet::<D, Dielectric, false>::prepare(p);
                 let wo = crate::narrow(crate::direction(cos, 0.2));
-                let mut mean = 0.0;
-                for a in 0..128 {
-                    for b in 0..128 {
-                        let wi = model.sample(wo, Vec3::new((a as f32 + 0.5) / 128.0, (b as f32 + 0.5) / 128.0, 0.5));
-                        let eval = model.eval(wo, wi);
-                        mean += if eval.pdf > 0.0 { f64::from(eval.f_cos / eval.pdf) / 128.0 / 128.0 } else { 0.0 };
-                    }
-                }
-                let over = f64::from(model.top_albedo(cos as f32)) - mean;
-                worst[k] = [worst[k][0].min(over), worst[k][1].max(over)];
+                let stated = f64::from(model.top_albedo(wo));
+                worst = worst.max((stated - mean_of(&model, wo, 160).x).abs());
             }
         }
+        worst
     }
-    println!("table less albedo: separable {:.3?}, grooves {:.3?}", worst[0], worst[1]);
+    for geometry in [Geometry::Separable, Geometry::VGroove] {
+        let errors = [worst::<Ggx>(geometry), worst::<Beckmann>(geometry), worst::<Blinn>(geometry)];
+        println!("{geometry:?}: {errors:?}");
+        // Where one side of a groove takes over from the other, the albedo has a kink that a smooth rule rounds off.
+        let most = if geometry == Geometry::VGroove { 5e-3 } else { 1e-3 };
+        assert!(errors.iter().all(|&e| e < most), "{geometry:?}: {errors:?}");
+    }
 }
 
 /// The mean weight of samples on a grid that is dense at both ends of the first number, a triple.
@@ -248,7 +248,7 @@ fn halves<D: Distribution>(geometry: Geometry, most: &mut f64, off: &mut f64) {
                 *most = most.max(both(Microfacet::<D, Dielectric, false>::prepare(p), through, wo));
                 if eta > 1.0 && x == y && geometry == Geometry::Smith {
                     let passed = mean(&through, wo);
-                    *off = off.max((f64::from(through.top_albedo(cos as f32)) - passed.x).abs());
+                    *off = off.max((f64::from(through.top_albedo(wo)) - passed.x).abs());
                 }
             }
             let p = params([x, y, 0.04, 0.3, 0.0, 1.0, 1.0, 0.5, 5.0, 2.0, m]);

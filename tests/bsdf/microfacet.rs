@@ -370,7 +370,7 @@ fn parameters_at_their_ends_stay_finite() {
                 assert!(eval.pdf >= 0.0 && eval.pdf.is_finite(), "{values:?} {wo} {w} {eval:?}");
                 assert!(color.is_finite() && color.min_element() >= 0.0, "{values:?} {wo} {w} {color}");
             }
-            assert!((0.0..=1.0).contains(&model.albedo(wo.z)) && (0.0..=1.0).contains(&model.top_albedo(wo.z)));
+            assert!((0.0..=1.0).contains(&model.albedo(wo.z)) && (0.0..=1.0).contains(&model.top_albedo(wo)));
         }
     }
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0, 1e-39, 1.0, 7.0];

@@ -1,4 +1,4 @@
-//! Directional albedo of the reflecting half under any Fresnel term, from one table a distribution.
+//! Directional albedo of the reflecting half under any Fresnel term, from one table a distribution and shadowing term.
 //!
 //! The albedo is the integral of F(o.m) over a measure of the cosines o.m, which depends on the viewer's cosine and the width
 //! alone. The table keeps the six nodes and weights of the Gauss rule of that measure, so the albedo is a sum of six
@@ -10,6 +10,7 @@
 //! range is scaled to the width, because masking depends on cos / alpha near the horizon and on alpha itself elsewhere.
 //! An albedo takes about 95 ns, three times what evaluating the lobe and its base takes: a lane without a layer pays nothing.
 
+use super::Geometry;
 use super::distribution::{Distribution, Widths};
 use super::ggx::Ggx;
 use crate::bsdf::fresnel::{Fresnel, limited};
@@ -36,7 +37,7 @@ const LEAST: f32 = super::MIN_ALPHA;
 /// Nodes are interpolated as centers of gravity, because those of almost no weight lie far away in one cell and not in the next.
 type Cell = [f32; 2 * NODES];
 
-/// The albedo of the reflecting half of one distribution with the height-correlated Smith term.
+/// The albedo of the reflecting half of one distribution with one shadowing term.
 #[derive(Debug)]
 pub struct FacetTable {
     cells: Vec<Cell>,
@@ -58,7 +59,7 @@ fn cosine_axis(cos: f32, alpha: f32) -> f32 {
 
 impl FacetTable {
     /// Integrates the distribution at all places of the table; takes some 40 to 60 ms on one thread.
-    pub fn build<D: Distribution>() -> Self {
+    pub fn build<D: Distribution>(geometry: Geometry) -> Self {
         let (along, across) = (gauss_legendre(20, 0.0, 1.0), gauss_legendre(14, 0.0, 1.0));
         let mut cells = Vec::with_capacity(WIDTHS * COSINES);
         let mut points = Vec::with_capacity(along.len() * across.len());
@@ -70,7 +71,7 @@ impl FacetTable {
                 let t = j as f32 / (COSINES - 1) as f32;
                 let cos = ((exp2(t * log2(1.0 + over)) - 1.0) / over).clamp(1e-6, 1.0);
                 points.clear();
-                facets(&distribution, alpha, cos, [&along, &across], &mut points);
+                facets(&distribution, geometry, [alpha, cos], [&along, &across], &mut points);
                 let rule = gauss_rule(&points);
                 let mut cell = [0.0; 2 * NODES];
                 for k in 0..NODES {
@@ -226,7 +227,13 @@ impl Stretched {
 ///
 /// Source: visible normals of GGX are the projection of a hemisphere (Heitz 2018, "Sampling the GGX Distribution of Visible
 /// Normals"), integrated by chords of the disc; each weighs G2 / G1 and the ratio of the distributions.
-fn facets<D: Distribution>(d: &D, alpha: f32, cos: f32, rules: [&[Node]; 2], out: &mut Vec<Node>) {
+fn facets<D: Distribution>(
+    d: &D,
+    geometry: Geometry,
+    [alpha, cos]: [f32; 2],
+    rules: [&[Node]; 2],
+    out: &mut Vec<Node>,
+) {
     let ggx = Ggx(Widths { x: alpha, y: alpha });
     let (alpha, c) = (f64::from(alpha), f64::from(cos));
     let sin = ((1.0 - c) * (1.0 + c)).max(0.0).sqrt();
@@ -259,7 +266,8 @@ fn facets<D: Distribution>(d: &D, alpha: f32, cos: f32, rules: [&[Node]; 2], out
             let z = (up as f32).clamp(1e-12, 1.0);
             let light = Vec3::new(((1.0 - z) * (1.0 + z)).sqrt(), 0.0, z);
             let facet = Vec3::new(m[0] as f32, m[1] as f32, m[2] as f32);
-            let shadowing = masking / f64::from(1.0 + lambda + d.lambda(light));
+            let lambdas = [f64::from(lambda), f64::from(d.lambda(light))];
+            let shadowing = masking * geometry.part(lambdas, [c, up.max(0.0)], om, m[2]);
             let ratio = f64::from(d.d(facet) / ggx.d(facet).max(1e-30));
             let weight = width * node.weight * 6.0 * t * (1.0 - t) * (to - from) * shadowing * ratio;
             out.push(Node { x: om.clamp(0.0, 1.0), weight });

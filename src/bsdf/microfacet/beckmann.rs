@@ -1,5 +1,6 @@
 //! Facets of Beckmann and Spizzichino.
 
+use super::Geometry;
 use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths, normal_of_slope};
 use crate::bsdf::power;
@@ -29,9 +30,9 @@ const K: [f32; 11] = [
 pub struct Beckmann(pub Widths);
 
 impl Distribution for Beckmann {
-    fn table() -> &'static FacetTable {
-        static TABLE: OnceLock<FacetTable> = OnceLock::new();
-        TABLE.get_or_init(FacetTable::build::<Beckmann>)
+    fn table(geometry: Geometry) -> &'static FacetTable {
+        static TABLES: [OnceLock<FacetTable>; 3] = [const { OnceLock::new() }; 3];
+        TABLES[geometry as usize].get_or_init(|| FacetTable::build::<Beckmann>(geometry))
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! Facets of Blinn: a power of the cosine, with the Smith term that belongs to it.
 
+use super::Geometry;
 use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths};
 use crate::bsdf::power::{exp2, log2};
@@ -44,9 +45,9 @@ fn log2_cos2(sin2: f32, cos2: f32) -> f32 {
 }
 
 impl Distribution for Blinn {
-    fn table() -> &'static FacetTable {
-        static TABLE: OnceLock<FacetTable> = OnceLock::new();
-        TABLE.get_or_init(FacetTable::build::<Blinn>)
+    fn table(geometry: Geometry) -> &'static FacetTable {
+        static TABLES: [OnceLock<FacetTable>; 3] = [const { OnceLock::new() }; 3];
+        TABLES[geometry as usize].get_or_init(|| FacetTable::build::<Blinn>(geometry))
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! What a distribution of microfacets must answer, and the widths that all of them share.
 
+use super::Geometry;
 use super::albedo::FacetTable;
 use glam::Vec3;
 
@@ -14,8 +15,8 @@ pub struct Widths {
 
 /// A distribution of microfacets over a flat surface, with the Smith shadowing that belongs to it.
 pub trait Distribution: Copy {
-    /// The albedos of all widths, made when they are first asked for.
-    fn table() -> &'static FacetTable;
+    /// The albedos of all widths under a shadowing term, made when they are first asked for.
+    fn table(geometry: Geometry) -> &'static FacetTable;
     /// Makes the constants; widths are in 1e-3..1.
     fn new(widths: Widths) -> Self;
     /// The widths in force, which are not those given where a model has only one.

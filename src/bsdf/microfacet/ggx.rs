@@ -1,5 +1,6 @@
 //! Facets of Trowbridge and Reitz (GGX), and their visible normals, which all distributions sample.
 
+use super::Geometry;
 use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths, normal_of_slope};
 use crate::math::warp::turn;
@@ -12,9 +13,9 @@ use std::sync::OnceLock;
 pub struct Ggx(pub Widths);
 
 impl Distribution for Ggx {
-    fn table() -> &'static FacetTable {
-        static TABLE: OnceLock<FacetTable> = OnceLock::new();
-        TABLE.get_or_init(FacetTable::build::<Ggx>)
+    fn table(geometry: Geometry) -> &'static FacetTable {
+        static TABLES: [OnceLock<FacetTable>; 3] = [const { OnceLock::new() }; 3];
+        TABLES[geometry as usize].get_or_init(|| FacetTable::build::<Ggx>(geometry))
     }
 
     #[inline(always)]
