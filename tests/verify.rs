@@ -37,7 +37,7 @@ fn every_closure_passes() {
     let compiler = Compiler::new();
     let long = std::env::var_os("VELOUR_LONG_TESTS").is_some();
     let subjects: Vec<ClosureSubject> = (0..compiler.closures.specs.len() as u32)
-        .map(|id| velour::lang::closures::ClosureId(id))
+        .map(velour::lang::closures::ClosureId)
         .map(|id| ClosureSubject::new(&compiler, id, long, Settings::default()).expect("a shader that calls it"))
         .collect();
     let list: Vec<&dyn Subject> = subjects.iter().map(|subject| subject as &dyn Subject).collect();

@@ -138,7 +138,6 @@ fn settings(args: &RenderArgs) -> Settings {
             shadowing: args.shadowing,
             sheen_sampling: args.sheen_sampling,
             softening: args.softening,
-            ..defaults.closure
         },
         ..defaults
     }

@@ -10,8 +10,9 @@ use super::lobes::{Dropped, Lobe, Lobes};
 use super::settings::Layering;
 use super::surfaces::{NONE, Seen, Surfaces};
 use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
-use crate::lang::closures::{ClosureSpec, ClosureTable};
+use crate::lang::closures::{ClosureSpec, ClosureTable, Model};
 use crate::math::columns::Column3;
+use std::collections::HashMap;
 
 /// More lobes or pending weights than this are dropped and reported: a shared base under many different layers could
 /// otherwise grow without bound.
@@ -43,7 +44,7 @@ pub struct Sweep {
     columns: Vec<f32>,
     in_top: Vec<bool>,
     step_of: Vec<u32>,
-    leaves_of: Vec<(u32, u32)>,
+    leaves_of: HashMap<(u32, u32), (u32, u32)>,
     emitters: Vec<(Weight, u32, bool, NodeId)>,
 }
 
@@ -56,7 +57,6 @@ impl Sweep {
         self.step_of.clear();
         self.step_of.resize(nodes, 0);
         self.leaves_of.clear();
-        self.leaves_of.resize(nodes, (0, 0));
         self.entries.clear();
         self.columns.clear();
         self.emitters.clear();
@@ -226,11 +226,10 @@ fn make_ready(lobes: &mut Lobes, spec: &ClosureSpec, tree: &Tree, index: u32, me
     if let Some(top) = leaf.top {
         lobes.sweep.in_top[top.0 as usize] = true;
     }
-    // A top that lies in several media has the albedo it has in the first.
-    if lobes.sweep.leaves_of[index as usize] == (0, 0) {
+    if lobes.sweep.in_top[index as usize] {
         let first = lobes.layers.leaves.len() as u32;
         lobes.layers.leaves.extend(leaf.parts.iter().map(|part| (part.surface, part.t)));
-        lobes.sweep.leaves_of[index as usize] = (first, lobes.layers.leaves.len() as u32);
+        lobes.sweep.leaves_of.insert((index, medium), (first, lobes.layers.leaves.len() as u32));
     }
     leaf
 }
@@ -353,7 +352,7 @@ fn add_lobe(
     true
 }
 
-/// Writes the albedo of every tree that lies on top of something as steps, children first.
+/// Writes the albedo of every tree that lies on top of something as steps, children first, for every medium it lies in.
 fn build_steps(
     sweep: &mut Sweep,
     layers: &mut Layers,
@@ -366,44 +365,58 @@ fn build_steps(
         return;
     }
     layers.steps.push(Step::Zero);
-    for index in 0..=root.0 as usize {
-        if !sweep.in_top[index] {
-            continue;
+    let mut media: Vec<u32> = layers.tops().map(|(_, medium)| medium).collect();
+    media.sort_unstable();
+    media.dedup();
+    for medium in media {
+        for index in (0..=root.0).filter(|&index| sweep.in_top[index as usize]) {
+            let step = step_of(sweep, layers, surfaces, table, (tree, index, medium));
+            layers.steps.push(step);
+            sweep.step_of[index as usize] = layers.steps.len() as u32 - 1;
         }
-        let of = |child: Option<NodeId>| child.map_or(0, |c| sweep.step_of[c.0 as usize]);
-        let step = match tree.nodes[index] {
-            Node::Scale { weight, child } => {
-                let largest = |lane| weight.iter().map(|&w| tree.float(w, lane).abs()).fold(0.0, f32::max);
-                Step::Scale(surfaces.push_column(largest), of(Some(child)))
+        let here: Vec<usize> = layers.tops().filter(|&(_, m)| m == medium).map(|(layer, _)| layer).collect();
+        for layer in here {
+            if let Top::Tree(node) = &mut layers.list[layer].top {
+                *node = sweep.step_of[*node as usize];
             }
-            Node::Add(a, b) => Step::Add(of(Some(a)), of(Some(b))),
-            Node::Select { mask, then, otherwise } => {
-                let column = surfaces.push_column(|lane| if tree.int(mask, lane) != 0 { 1.0 } else { 0.0 });
-                Step::Select(column, of(then), of(otherwise))
-            }
-            Node::Leaf { closure, first_param, param_count, .. } => {
-                let nested = |k: u32| match tree.params.get((first_param + k) as usize) {
-                    Some(Param::Closure(child)) if k < param_count => of(*child),
-                    _ => 0,
-                };
-                let (first, last) = sweep.leaves_of[index];
-                match table.get(closure).model {
-                    crate::lang::closures::Model::Layer => Step::Over(nested(0), nested(1)),
-                    crate::lang::closures::Model::Sheen | crate::lang::closures::Model::Coat => {
-                        let base = nested(0);
-                        layers.steps.push(Step::Leaves(first, last));
-                        Step::Over(layers.steps.len() as u32 - 1, base)
-                    }
-                    _ => Step::Leaves(first, last),
-                }
-            }
-        };
-        layers.steps.push(step);
-        sweep.step_of[index] = layers.steps.len() as u32 - 1;
+        }
     }
-    for layer in &mut layers.list {
-        if let Top::Tree(node) = &mut layer.top {
-            *node = sweep.step_of[*node as usize];
+}
+
+/// The albedo of one node in a medium, from those of its children there.
+fn step_of(
+    sweep: &Sweep,
+    layers: &mut Layers,
+    surfaces: &mut Surfaces,
+    table: &ClosureTable,
+    (tree, index, medium): (&Tree, u32, u32),
+) -> Step {
+    let of = |child: Option<NodeId>| child.map_or(0, |c| sweep.step_of[c.0 as usize]);
+    match tree.nodes[index as usize] {
+        Node::Scale { weight, child } => {
+            let largest = |lane| weight.iter().map(|&w| tree.float(w, lane).abs()).fold(0.0, f32::max);
+            Step::Scale(surfaces.push_column(largest), of(Some(child)))
+        }
+        Node::Add(a, b) => Step::Add(of(Some(a)), of(Some(b))),
+        Node::Select { mask, then, otherwise } => {
+            let column = surfaces.push_column(|lane| if tree.int(mask, lane) != 0 { 1.0 } else { 0.0 });
+            Step::Select(column, of(then), of(otherwise))
+        }
+        Node::Leaf { closure, first_param, param_count, .. } => {
+            let nested = |k: u32| match tree.params.get((first_param + k) as usize) {
+                Some(Param::Closure(child)) if k < param_count => of(*child),
+                _ => 0,
+            };
+            let (first, last) = sweep.leaves_of.get(&(index, medium)).copied().unwrap_or((0, 0));
+            match table.get(closure).model {
+                Model::Layer => Step::Over(nested(0), nested(1)),
+                Model::Sheen | Model::Coat => {
+                    let base = nested(0);
+                    layers.steps.push(Step::Leaves(first, last));
+                    Step::Over(layers.steps.len() as u32 - 1, base)
+                }
+                _ => Step::Leaves(first, last),
+            }
         }
     }
 }

@@ -154,7 +154,8 @@ impl Kind {
         matches!(self, Kind::Reflection(_) | Kind::Refraction(_) | Kind::Transparent)
     }
 
-    /// True for lobes that scatter light about evenly, whatever the directions.
+    /// True for lobes that scatter light about evenly, whatever the directions: what a coat throws back at them comes out
+    /// in the end. Sheens, and the light under a highlight, prefer directions, and take the rule that is safe for all.
     pub fn is_diffuse(self) -> bool {
         matches!(self, Kind::Lambert | Kind::Translucent | Kind::OrenNayar | Kind::Burley | Kind::Eon)
     }

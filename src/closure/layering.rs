@@ -119,6 +119,12 @@ impl Layers {
         self.list.get(layer as usize).map_or(NONE, |l| l.medium)
     }
 
+    /// The layers whose top is a tree, each with the medium that it lies in.
+    pub fn tops(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
+        let trees = self.list.iter().enumerate().filter(|(_, layer)| matches!(layer.top, Top::Tree(_)));
+        trees.map(|(index, layer)| (index, self.medium(layer.parent)))
+    }
+
     /// Computes what depends on the viewer alone.
     pub fn prepare(&mut self, surfaces: &Surfaces, media: &Media, ones: &[f32]) {
         let n = surfaces.lanes;

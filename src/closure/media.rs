@@ -6,7 +6,8 @@
 //!
 //! Source: Weidlich and Wilkie 2007, eq. 6 to 9: f = f_coat + T_i T_o f_base(wi', wo') exp(-s (1/ci' + 1/co')), with the
 //! optical depth s of the coat.
-//! Departs from source: their factor for light that facets shadow (G) is 1, which never adds light.
+//! Departs from source: T is 1 less the albedo of the boundary's lobe, on both sides, which stands for their factor for
+//! light that facets shadow (G): what a rough boundary does not reflect passes.
 //!
 //! Decision (2026-11-22): the paper's formula takes f of the base as it stands, which is right for a diffuse base, where the
 //! light that the boundary throws back is scattered again and finds its way out, and sends out eta² times too much from a
@@ -15,8 +16,10 @@
 
 use super::batch::{LobeColumns, Triples};
 use super::surfaces::FrameColumns;
-use crate::bsdf::fresnel::dielectric;
-use crate::bsdf::select;
+use crate::bsdf::fresnel::{Dielectric, Fresnel, dielectric};
+use crate::bsdf::microfacet::distribution::Distribution;
+use crate::bsdf::microfacet::{Geometry, Ggx, MIN_ALPHA};
+use crate::bsdf::{params, select};
 use crate::math::columns::Column3;
 use crate::math::elementary::exp;
 use glam::Vec3;
@@ -31,6 +34,8 @@ pub struct Medium {
     frame: u32,
     /// Index of refraction inside over outside; at 0 and below nothing passes.
     eta: Vec<f32>,
+    /// GGX width of the boundary, where it is rough.
+    alpha: Option<Vec<f32>>,
     /// Optical depth of a perpendicular crossing, when it absorbs.
     depth: Option<Column3>,
     /// The viewer inside, world.
@@ -60,6 +65,8 @@ pub struct Coat {
     pub frame: u32,
     /// Index of refraction inside over outside.
     pub eta: Vec<f32>,
+    /// GGX width of the boundary, where any lane is rough.
+    pub alpha: Option<Vec<f32>>,
     /// Optical depth of a perpendicular crossing, when it absorbs.
     pub depth: Option<Column3>,
 }
@@ -89,13 +96,13 @@ impl Media {
     /// Adds the medium under a coat, with what the viewer decides, and gives its index.
     pub fn push(&mut self, parent: u32, coat: Coat, frames: &[FrameColumns], wo: &Column3) -> u32 {
         let n = wo.len();
-        let Coat { frame, mut eta, depth } = coat;
+        let Coat { frame, mut eta, alpha, depth } = coat;
         for value in &mut eta {
             *value = if value.is_finite() { value.min(1e3) } else { 1.0 };
         }
         let outer = self.get(parent);
         let colored = depth.is_some() || outer.is_some_and(|m| m.colored);
-        let mut medium = Medium { parent, frame, eta, depth, colored, ..Medium::default() };
+        let mut medium = Medium { parent, frame, eta, alpha, depth, colored, ..Medium::default() };
         for column in [&mut medium.wo, &mut medium.wi, &mut medium.tint_o, &mut medium.tint_i] {
             column.resize(n);
         }
@@ -108,6 +115,7 @@ impl Media {
         // The viewer's solid angle and spread are not needed; their columns are filled anew with every light.
         let (density, spread) = (&mut medium.density, &mut medium.spread);
         enter_lanes(from, above, &mut w.x, &mut w.y, &mut w.z, &mut medium.pass_o, density, spread);
+        pass_facets(from, above, medium.alpha.as_deref(), &mut medium.pass_o);
         for lane in 0..n {
             let around = outer.filter(|m| m.colored).map_or(Vec3::ONE, |m| m.tint_o.get(lane));
             let cos = frames[frame as usize].normal.get(lane).dot(medium.wo.get(lane));
@@ -121,12 +129,14 @@ impl Media {
     pub fn light(&mut self, frames: &[FrameColumns], wi: &Column3) {
         for index in 0..self.list.len() {
             let (before, rest) = self.list.split_at_mut(index);
-            let Medium { parent, frame, eta, depth, wi: inside, tint_i, pass_i, density, spread, colored, .. } =
-                &mut rest[0];
+            let Medium {
+                parent, frame, eta, alpha, depth, wi: inside, tint_i, pass_i, density, spread, colored, ..
+            } = &mut rest[0];
             let outer = before.get(*parent as usize);
             let from = Crossing { normal: Triples::of(&frames[*frame as usize].normal), eta };
             let above = Triples::of(outer.map_or(wi, |m| &m.wi));
             enter_lanes(from, above, &mut inside.x, &mut inside.y, &mut inside.z, pass_i, density, spread);
+            pass_facets(from, above, alpha.as_deref(), pass_i);
             if let Some(outer) = outer {
                 for lane in 0..wi.len() {
                     density[lane] *= outer.density[lane];
@@ -213,6 +223,19 @@ struct Crossing<'a> {
     eta: &'a [f32],
 }
 
+/// What a rough boundary lets through where it lets any through: all that its facets do not reflect.
+fn pass_facets(from: Crossing, outside: Triples, alpha: Option<&[f32]>, pass: &mut [f32]) {
+    let Some(alpha) = alpha else { return };
+    for (lane, pass) in pass.iter_mut().enumerate() {
+        let cos = from.normal.at(lane).dot(outside.at(lane));
+        if alpha[lane] >= MIN_ALPHA && cos > 0.0 && *pass > 0.0 {
+            let fresnel = Dielectric::prepare(params([from.eta[lane]]), 0);
+            let reflected = Ggx::table(Geometry::Smith).color(&fresnel, alpha[lane].min(1.0), cos.min(1.0));
+            *pass = 1.0 - reflected.x;
+        }
+    }
+}
+
 /// Directions inside a coat from those outside, what part of the light passes the boundary, the ratio of the solid angles
 /// (inside over outside) and that of the cosines (outside over inside). Directions below stay as they are.
 #[multiversion(targets("x86_64+avx2"))]
@@ -235,13 +258,17 @@ fn enter_lanes(
         let cos = m.dot(w);
         let above = cos > 0.0;
         let inverse = 1.0 / eta.max(1e-3);
-        let inner = (1.0 - inverse * inverse * (1.0 - cos * cos).max(0.0)).max(1e-12).sqrt();
+        let inner2 = 1.0 - inverse * inverse * (1.0 - cos * cos).max(0.0);
+        // Into a lighter medium some light does not come in at all.
+        let lost = above && inner2 <= 1e-6;
+        let inner = inner2.max(1e-6).sqrt();
         let bent = (w - m * cos) * inverse + m * inner;
+        let bent = bent * (1.0 / bent.dot(bent).max(1e-12).sqrt());
         x[i] = select(above, bent.x, w.x);
         y[i] = select(above, bent.y, w.y);
         z[i] = select(above, bent.z, w.z);
-        pass[i] = select(above, 1.0 - dielectric(cos, eta), 1.0);
-        spread[i] = select(above, cos / inner, 1.0);
-        density[i] = select(above, inverse * inverse * cos / inner, 1.0);
+        pass[i] = select(lost, 0.0, select(above, 1.0 - dielectric(cos, eta), 1.0));
+        spread[i] = select(lost, 0.0, select(above, cos / inner, 1.0));
+        density[i] = select(lost, 0.0, select(above, inverse * inverse * cos / inner, 1.0));
     }
 }

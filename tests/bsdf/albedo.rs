@@ -152,7 +152,7 @@ fn tops_know_their_albedo() {
     for errors in [errors::<Ggx>(), errors::<Beckmann>(), errors::<Blinn>()] {
         let (inside, outside) = errors.split_last().expect("terms");
         assert!(outside.iter().all(|&e| e <= 1e-3), "{outside:?}");
-        assert!(*inside <= 0.3);
+        assert!(*inside <= 0.12, "{inside}");
     }
 }
 
@@ -270,5 +270,5 @@ fn no_boundary_gains_energy() {
         halves::<Blinn>(*geometry, &mut most[k], &mut off);
     }
     println!("both halves together reach {most:?}; the transmitting half of a top errs by up to {off:.3}");
-    assert!(most.iter().all(|&m| m <= 1.0 + 1e-4), "{most:?}");
+    assert!(most.iter().all(|&m| m <= 1.0 + 1e-4) && off < 0.34, "{most:?} {off}");
 }

@@ -182,7 +182,7 @@ fn lanes_of_one_batch_may_differ_in_everything() {
             distribution,
             geometry,
             sampling,
-            (lane % 5 != 0) as u8 as f32,
+            f32::from(u8::from(!lane.is_multiple_of(5))),
             0.15 * (lane % 6) as f32,
             1.2 + 0.1 * (lane % 3) as f32,
         )

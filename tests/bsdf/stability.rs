@@ -179,7 +179,7 @@ fn row_13_albedo_at_the_ends_of_its_domain() {
     }
     let curve = Sheen::<EXACT, true>::prepare(params([0.25, 0.1]));
     let end = curve.albedo(f32::NAN);
-    assert!(end.is_nan() || (0.0..=1.0).contains(&end), "no panic, no index");
+    assert!((0.0..=1.0).contains(&end), "{end}");
 }
 
 /// Naive: 10 % wrong at 1 - 1e-6, because (f / c - 1) / 2 cancels.

@@ -7,6 +7,7 @@ pub mod conductor;
 pub mod dielectric;
 pub mod schlick;
 
+pub(crate) use super::limited;
 pub use conductor::{Conductor, conductor};
 pub use dielectric::{Dielectric, dielectric, refracted};
 pub use schlick::{Schlick, eta_of_reflectance};
@@ -71,11 +72,4 @@ impl Term {
             Term::Schlick => Schlick::prepare(params, 0).eta(),
         }
     }
-}
-
-/// A number brought between two others; what is not a number becomes the lower one.
-#[inline(always)]
-pub(crate) fn limited(x: f32, low: f32, high: f32) -> f32 {
-    let x = if x > low { x } else { low };
-    if x < high { x } else { high }
 }

@@ -7,10 +7,12 @@ use glam::Vec3;
 
 /// The index of refraction (inside over outside, >= 1) of a dielectric that reflects this part at normal incidence.
 ///
-/// Source: Fresnel, f0 = ((eta - 1) / (eta + 1))². Domain: all, limited to 0..0.996. Gives: 1..999.
+/// Source: Fresnel, f0 = ((eta - 1) / (eta + 1))². Domain: all, limited to 2.5e-5..0.996. Gives: 1.01..999.
+/// Departs from source: it never is 1, because Schlick's term reflects even where f0 is 0, and light that goes straight on
+/// through a rough surface would not know how much its facets reflect.
 #[inline(always)]
 pub fn eta_of_reflectance(f0: f32) -> f32 {
-    let r = limited(f0, 0.0, 0.996).sqrt();
+    let r = limited(f0, 2.5e-5, 0.996).sqrt();
     (1.0 + r) / (1.0 - r)
 }
 

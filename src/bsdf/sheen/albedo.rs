@@ -83,7 +83,7 @@ impl AlbedoCurve {
     /// The albedo at a cosine, clamped to 0..1. `LONG` curves have all coefficients, the others 7.
     #[inline(always)]
     pub fn at<const LONG: bool>(&self, cos: f32) -> f32 {
-        let t = cube_root(cos.clamp(MIN_COS, 1.0));
+        let t = cube_root(crate::bsdf::limited(cos, MIN_COS, 1.0));
         let x = (t - MIN_T) * (2.0 / (1.0 - MIN_T)) - 1.0;
         let value = if LONG { chebyshev::<CURVE>(&self.c, x) } else { chebyshev::<SHORT>(&self.c, x) };
         value.clamp(0.0, 1.0)

@@ -3,7 +3,7 @@
 use super::Sheen;
 use super::charlie::{distribution, sin2_half};
 use crate::bsdf::power::power;
-use crate::bsdf::{Eval, Params, Scatter, View, select};
+use crate::bsdf::{Eval, Params, Scatter, View, above_horizon, select};
 use crate::math::warp::turn;
 use glam::Vec3;
 
@@ -11,7 +11,7 @@ use glam::Vec3;
 ///
 /// Source: own inversion; the change to light directions is Torrance and Sparrow's 1 / (4 wo . m).
 /// Domain: as [`Sheen`]. Gives: directions of which most fall below the horizon (at r = 0.15 and a view along the
-/// normal 95 %); their density there is 0, so they count as absorbed. Degenerate cases: the viewer exactly along m's
+/// normal 95 %), which are given up. Degenerate cases: the viewer exactly along m's
 /// horizon gives density 0.
 #[derive(Clone, Copy, Debug)]
 pub struct ByNormals<const SHADOWING: u8, const SOFT: bool>(Sheen<SHADOWING, SOFT>);
@@ -47,7 +47,7 @@ impl<const SHADOWING: u8, const SOFT: bool> Scatter for ByNormals<SHADOWING, SOF
         let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
         let (x, y) = turn(xi.y);
         let m = Vec3::new(sin * x, sin * y, cos);
-        m * (2.0 * wo.dot(m)) - wo
+        above_horizon(m * (2.0 * wo.dot(m)) - wo)
     }
 
     #[inline(always)]

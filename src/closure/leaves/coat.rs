@@ -17,6 +17,12 @@ pub(super) fn leaf(surfaces: &mut Surfaces, context: &LeafContext, arguments: &A
     let (absorption, thickness) = (arguments.triple(4), arguments.float(5));
     let frame = surfaces.frame(tree, arguments.triple(1), None, &context.seen);
     let mut leaf = Leaf { base: arguments.closure(0), ..Leaf::default() };
+    let absorbs = |lane: usize| Vec3::from_array(absorption.map(|c| tree.float(c, lane)));
+    let number = |lane: usize| {
+        let all = [tree.float(alpha, lane), tree.float(eta, lane), tree.float(thickness, lane)];
+        absorbs(lane).is_finite() && all.iter().all(|v| v.is_finite())
+    };
+    let broken = (0..n).any(|lane| !number(lane));
     let rough = Kind::Microfacet { distribution: Facets::Ggx, term: Term::Dielectric, refract: false };
     let usual = Floats::Uniform(method(Geometry::Smith, Sampling::Visible));
     // Codes: 1 smooth, 2 rough.
@@ -26,22 +32,34 @@ pub(super) fn leaf(surfaces: &mut Surfaces, context: &LeafContext, arguments: &A
             1 => (Kind::Reflection(Term::Dielectric), &[eta][..]),
             _ => (rough, &[alpha, alpha, eta, usual][..]),
         };
+        let gate = if broken { mark(surfaces, gate, number) } else { gate };
         // The viewer is always outside of a coat, so its eta is never inverted.
         let request = Request { kind, closure: arguments.spec.name, frame, params, eta: None, gate };
         leaf.parts.push(Part { surface: surfaces.push(tree, request), t: 0 });
     }
-    let optical = |lane: usize| {
-        let depth = Vec3::from_array(absorption.map(|c| tree.float(c, lane))) * tree.float(thickness, lane);
-        // A coat cannot add light, and one that is no number takes none.
-        if depth.is_finite() { depth.max(Vec3::ZERO) } else { Vec3::ZERO }
+    // A coat that is dropped for its parameters takes nothing from its base, and none can add light.
+    let optical = |lane: usize| match number(lane) {
+        true => (absorbs(lane) * tree.float(thickness, lane)).clamp(Vec3::ZERO, Vec3::splat(1e30)),
+        false => Vec3::ZERO,
     };
     let clear = (0..n).all(|lane| optical(lane) == Vec3::ZERO);
     let mut depth = Column3::zeros(if clear { 0 } else { n });
     for lane in 0..depth.len() {
         depth.set(lane, optical(lane));
     }
-    let eta = (0..n).map(|lane| tree.float(eta, lane)).collect();
-    leaf.coat = Some(Coat { frame, eta, depth: (!clear).then_some(depth) });
+    let column = |of: Floats, missing: f32| -> Vec<f32> {
+        (0..n).map(|lane| if number(lane) { tree.float(of, lane) } else { missing }).collect()
+    };
+    let widths = column(alpha, 0.0);
+    let alpha = widths.iter().any(|&a| a >= MIN_ALPHA).then_some(widths);
+    leaf.coat = Some(Coat { frame, eta: column(eta, 1.0), alpha, depth: (!clear).then_some(depth) });
     leaf.covers.push(Cover { surface: None, t: 0, rule: context.settings.layering, gate: NONE });
     leaf
+}
+
+/// A gate that is not a number in lanes whose parameters are none.
+fn mark(surfaces: &mut Surfaces, gate: u32, number: impl Fn(usize) -> bool) -> u32 {
+    let open: Vec<f32> =
+        (0..surfaces.lanes).map(|lane| if gate == NONE { 1.0 } else { surfaces.column(gate)[lane] }).collect();
+    surfaces.push_column(|lane| if number(lane) || open[lane] == 0.0 { open[lane] } else { f32::NAN })
 }

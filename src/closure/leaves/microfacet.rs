@@ -1,7 +1,8 @@
 //! Rough boundaries, which become smooth ones where their width is small.
 
-use super::{Arguments, Leaf, LeafContext, Part, variants};
+use super::{Arguments, Leaf, LeafContext, Part, largest, variants};
 use crate::bsdf::fresnel::{Term, eta_of_reflectance};
+use crate::bsdf::limited;
 use crate::bsdf::microfacet::{Geometry, MIN_ALPHA, MIN_ETA_DIFFERENCE, Sampling, method};
 use crate::closure::kinds::{Facets, Kind};
 use crate::closure::surfaces::{Request, Surfaces};
@@ -70,7 +71,10 @@ impl Boundary<'_> {
         match self.term {
             Term::Dielectric => at(0),
             Term::Conductor => 0.0,
-            Term::Schlick => eta_of_reflectance((at(0) + at(1) + at(2)) / 3.0),
+            Term::Schlick => {
+                let part = |k: usize| limited(at(k), 0.0, 1.0);
+                eta_of_reflectance((part(0) + part(1) + part(2)) * (1.0 / 3.0))
+            }
         }
     }
 
@@ -141,17 +145,6 @@ impl Boundary<'_> {
         }
         leaf
     }
-}
-
-/// A column of the largest component of a color, which is how much a layer's top takes; offset 0 is 1 everywhere.
-fn largest(surfaces: &mut Surfaces, tree: &Tree, tint: [Floats; 3]) -> u32 {
-    if tint == WHITE {
-        return 0;
-    }
-    surfaces.push_column(|lane| {
-        let most = tint.iter().map(|&c| tree.float(c, lane).abs()).fold(0.0, f32::max);
-        if most.is_finite() { most } else { 0.0 }
-    })
 }
 
 /// `microfacet(distribution, N, U, xalpha, yalpha, eta, refract)`.

@@ -162,7 +162,7 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         let colored = matches!(kind, Kind::Lambert | Kind::Translucent | Kind::Burley);
         Leaf { parts, tint: if colored { tint(1) } else { None }, ..Leaf::default() }
     };
-    match spec.model {
+    let mut leaf = match spec.model {
         Model::Emission | Model::Background => Leaf { emits: true, tint: tint(0), ..Leaf::default() },
         Model::Holdout => Leaf { hole: true, ..Leaf::default() },
         Model::Debug | Model::Host(_) => Leaf::default(),
@@ -195,5 +195,22 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
         Model::SheenBsdf => cloth::sheen(surfaces, context, &arguments, 0),
         Model::Coat => coat::leaf(surfaces, context, &arguments),
         Model::Layer => cloth::layer(surfaces, context, &arguments),
+    };
+    // As a top, a colored leaf takes no more than its color reflects; leaves that say so themselves are left alone.
+    if let (Some(tint), true) = (leaf.tint, leaf.parts.iter().any(|part| part.t == 0)) {
+        let t = largest(surfaces, tree, tint);
+        leaf.parts.iter_mut().filter(|part| part.t == 0).for_each(|part| part.t = t);
     }
+    leaf
+}
+
+/// A column of the largest component of a color, which is how much a layer's top takes; offset 0 is 1 everywhere.
+fn largest(surfaces: &mut Surfaces, tree: &Tree, tint: [Floats; 3]) -> u32 {
+    if tint == [Floats::Uniform(1.0); 3] {
+        return 0;
+    }
+    surfaces.push_column(|lane| {
+        let most = tint.iter().map(|&c| tree.float(c, lane).abs()).fold(0.0, f32::max);
+        if most.is_finite() { most } else { 0.0 }
+    })
 }

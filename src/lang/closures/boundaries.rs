@@ -10,7 +10,7 @@ const DISTRIBUTION: ParamSpec = choice(
 const GEOMETRY: ParamSpec = choice(
     "geometry",
     &["smith", "separable", "vgroove"],
-    "shadowing: \"smith\" (default), \"separable\" or \"vgroove\" (reflection only)",
+    "shadowing: \"smith\" (default), \"separable\" or \"vgroove\"",
 );
 const SAMPLING: ParamSpec = choice(
     "sampling",

@@ -119,7 +119,7 @@ fn setting(shader: &Shader, name: &str, text: &str) -> Setting {
     let each = types.find(|v| v.name == name).and_then(|v| components(&v.ty));
     let parts: Vec<&str> = text.split(',').collect();
     let values = match each {
-        Some(each) if parts.len() % each == 0 => parts.chunks(each).map(|value| value.join(",")).collect(),
+        Some(each) if parts.len().is_multiple_of(each) => parts.chunks(each).map(|value| value.join(",")).collect(),
         _ => vec![text.to_owned()],
     };
     Setting { name: name.to_owned(), values }

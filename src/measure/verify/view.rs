@@ -95,8 +95,8 @@ pub fn look(scatterer: &mut dyn Scatterer, view: View, sampled: bool, effort: &E
     });
     let count = if sampled { effort.cells } else { effort.cells / 2 };
     let cells = Cells::new(Chart::new(wo), scouts.into_iter(), count, random);
-    // A twentieth of the noise of a cell's count is precise enough for the density.
-    let density = if sampled { 0.05 / (effort.samples as f64 * count as f64).sqrt() } else { 1e-4 };
+    // Errors of many patches along an edge add up, so each may be a two-hundredth of the noise of a cell's count.
+    let density = if sampled { 0.005 / (effort.samples as f64 * count as f64).sqrt() } else { 1e-4 };
     let mut evaluation = Evaluation::default();
     let integrals = cells.integrate(
         [density, effort.tolerance, effort.tolerance, effort.tolerance],
