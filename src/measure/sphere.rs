@@ -373,9 +373,10 @@ mod tests {
             for (cut, expected) in [(axis, 1.0), (normal, 0.5)] {
                 let f = lobe(axis, width, cut);
                 let mut random = Random(7);
+                // Scouts reach as far as the samples of such a lobe.
                 let near: Vec<Vec3> = (0..2000)
                     .map(|_| {
-                        let mut offset = || (random.number() - 0.5) * 3.0 * width as f32;
+                        let mut offset = || (random.number() - 0.5) * 6.0 * width as f32;
                         (axis + Vec3::new(offset(), offset(), offset())).normalize()
                     })
                     .collect();
