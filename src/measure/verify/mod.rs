@@ -71,7 +71,8 @@ impl Effort {
     fn closer(&self) -> Self {
         Effort {
             samples: 2 * self.samples,
-            directions: 10 * self.directions,
+            cells: 4 * self.cells,
+            directions: 40 * self.directions,
             tolerance: 0.1 * self.tolerance,
             seed: self.seed.wrapping_add(1),
             ..self.clone()
