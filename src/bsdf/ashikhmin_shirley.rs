@@ -1,6 +1,7 @@
 //! The anisotropic Phong model of Ashikhmin and Shirley: a highlight with Fresnel's rise, and the diffuse light under it.
 
 use super::bivariate::{collapse, horner};
+use super::cosine_power::MAX_EXPONENT;
 use super::cosine_power::log2_one_minus;
 use super::power::{exp2, log2};
 use super::{Eval, Params, Scatter, View, above_horizon, limited, select};
@@ -8,9 +9,6 @@ use crate::math::elementary::{expm1, ln};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf, turn};
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, TAU};
-
-/// The largest exponent.
-pub const MAX_EXPONENT: f32 = 1e6;
 
 /// (1 - x)^5, Schlick's rise.
 #[inline(always)]

@@ -29,7 +29,6 @@ pub struct Dielectric {
 
 impl Fresnel for Dielectric {
     const PARAMS: usize = 1;
-    const ETA: Option<usize> = Some(0);
     const COLORED: bool = false;
 
     #[inline(always)]

@@ -19,8 +19,6 @@ use glam::Vec3;
 pub trait Fresnel: Copy {
     /// How many parameters it reads.
     const PARAMS: usize;
-    /// Which of them is an index of refraction, to be inverted for a viewer inside.
-    const ETA: Option<usize> = None;
     /// True when the three components of [`Fresnel::color`] differ.
     const COLORED: bool;
     /// Makes the constants from the parameters that begin at index `from`.

@@ -35,7 +35,6 @@ pub struct Schlick {
 
 impl Fresnel for Schlick {
     const PARAMS: usize = 8;
-    const ETA: Option<usize> = Some(7);
     const COLORED: bool = true;
 
     #[inline(always)]
