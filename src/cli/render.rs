@@ -30,9 +30,15 @@ pub struct RenderArgs {
     /// N x N samples a pixel
     #[arg(long, value_name = "N", conflicts_with = "spp")]
     aa: Option<u32>,
-    /// Samples a pixel [default: 64]
+    /// Samples a pixel [default: 64]; the most of them with --noise or --time [default: 65536]
     #[arg(long, value_name = "N")]
     spp: Option<u32>,
+    /// Sample each tile until its error (root mean square, in units of radiance) is below N, such as 0.01
+    #[arg(long, value_name = "N")]
+    noise: Option<f32>,
+    /// Stop after S seconds; samples go where they lower the error most
+    #[arg(long, value_name = "S")]
+    time: Option<f64>,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u32,
@@ -124,10 +130,13 @@ fn failure(error: SceneError) -> Failure {
 
 fn settings(args: &RenderArgs) -> Settings {
     let defaults = Settings::default();
+    let adapts = args.noise.is_some() || args.time.is_some();
     Settings {
         width: args.res[0],
         height: args.res[1],
-        samples: args.spp.or(args.aa.map(|aa| aa.saturating_mul(aa))).unwrap_or(64),
+        samples: args.spp.or(args.aa.map(|aa| aa.saturating_mul(aa))).unwrap_or(if adapts { 1 << 16 } else { 64 }),
+        noise: args.noise,
+        seconds: args.time,
         seed: args.seed,
         threads: args.threads,
         max_bounces: args.max_bounces.unwrap_or(defaults.max_bounces),
@@ -157,11 +166,13 @@ fn pass_on(reports: &[Report]) {
 fn last_line(image: &Image, path: &std::path::Path, seconds: f64) -> String {
     let about = &image.about;
     let rate = about.paths as f64 / about.seconds_tracing.max(1e-9) / 1e6;
+    let [fewest, most] = about.taken;
+    let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
+    let noise = about.noise.map_or(String::new(), |noise| format!("error {noise:.2e}, "));
     format!(
-        "{}: {} x {}, {} samples a pixel, {seconds:.2} s, {rate:.2} million paths a second\n",
+        "{}: {} x {}, {samples} samples a pixel, {noise}{seconds:.2} s, {rate:.2} million paths a second\n",
         path.display(),
         image.width,
         image.height,
-        about.samples
     )
 }

@@ -56,10 +56,3 @@ impl RayCamera {
         (self.pixel_solid_angle * cos).max(0.0).sqrt() * cos
     }
 }
-
-/// Turns a uniform number into an offset from the pixel's centre with the density of a tent of half-width 1.
-#[inline]
-pub fn tent(x: f32) -> f32 {
-    let x = 2.0 * x;
-    if x < 1.0 { x.sqrt() - 1.0 } else { 1.0 - (2.0 - x).sqrt() }
-}

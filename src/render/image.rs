@@ -22,8 +22,12 @@ pub struct Image {
 pub struct About {
     /// The scene's name.
     pub scene: String,
-    /// Samples a pixel.
+    /// Samples a pixel that were asked for, the most of them when the render was to stop by itself.
     pub samples: u32,
+    /// The fewest and the most samples a pixel that any tile has got.
+    pub taken: [u32; 2],
+    /// Root of the mean square error of the whole image, in units of radiance, where the render estimated it.
+    pub noise: Option<f64>,
     /// The seed.
     pub seed: u32,
     /// Camera samples in all.

@@ -4,14 +4,16 @@
 //! has one `Wave` of scratch, in which the tile's paths advance together: intersect, sort by material, shade in
 //! batches, trace shadows, scatter. Shaders and closures are met in one file, `shading`.
 //!
-//! An image depends on scene, seed and sample count. It does not depend on thread count, batch width, wave size, tile
-//! size or tile order: a path draws its numbers by pixel, sample and bounce, adds up its own light in order, and a
-//! pixel adds up its samples in order.
+//! An image depends on scene, seed and sample count. It does not depend on thread count, batch width, wave size or tile
+//! order: a path draws its numbers by pixel, sample and bounce, adds up its own light in order, and a pixel adds up its
+//! samples in order. The size of a tile shows as good as never, see [`film`]. A render that stops at a noise depends on
+//! the tile size as well, one that stops at a time on the machine.
 
 pub mod accel;
 mod bounce;
 mod camera;
 mod few;
+mod film;
 mod host;
 mod image;
 pub mod light;
@@ -19,6 +21,7 @@ pub mod output;
 mod plan;
 mod progress;
 pub mod random;
+mod rounds;
 mod settings;
 mod shading;
 mod shadow;
@@ -36,6 +39,8 @@ pub use world::World;
 
 use crate::exec::Report;
 use crate::scene::Scene;
+use film::{Film, Sums};
+use rounds::{Rounds, Task};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
@@ -44,7 +49,8 @@ use wave::{Dropped, Wave};
 
 /// What the threads put together.
 struct Shared {
-    pixels: Vec<f32>,
+    film: Film,
+    rounds: Rounds,
     dropped: Dropped,
     rays: u64,
     reports: Vec<Report>,
@@ -60,60 +66,97 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     let start = Instant::now();
     let world = pool.install(|| World::new(scene, settings));
     let seconds_preparing = start.elapsed().as_secs_f64();
-    let channels = if settings.alpha { 4 } else { 3 };
-    let pixels = vec![0.0; settings.width as usize * settings.height as usize * channels];
-    let shared = Mutex::new(Shared { pixels, dropped: Dropped::default(), rays: 0, reports: Vec::new() });
-    let (next, done, total) = (AtomicUsize::new(0), AtomicUsize::new(0), Tile::count(settings));
+    let tiles = Tile::count(settings);
+    let shared = Mutex::new(Shared {
+        film: Film::new(settings),
+        rounds: Rounds::new(settings, tiles, start),
+        dropped: Dropped::default(),
+        rays: 0,
+        reports: world.reports.clone(),
+    });
     let failed = AtomicBool::new(world.reports.iter().any(|report| matches!(report, Report::Fatal(_))));
     let start = Instant::now();
-    pool.broadcast(|_| {
-        let mut wave = Wave::new(&world);
-        let mut sums = Vec::new();
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= total || progress.cancelled() || failed.load(Ordering::Relaxed) {
-                break;
-            }
-            let tile = Tile::number(settings, number);
-            tile.render(&world, &mut wave, &mut sums);
-            failed.fetch_or(wave.shading.failed(), Ordering::Relaxed);
-            if let Ok(mut shared) = shared.lock() {
-                store(&mut shared.pixels, &tile, settings, channels, &sums);
-            }
-            progress.tiles(done.fetch_add(1, Ordering::Relaxed) + 1, total);
-        }
-        if let Ok(mut shared) = shared.lock() {
-            shared.dropped.merge(&wave.dropped);
-            shared.rays += wave.rays;
-            shared.reports.extend(wave.shading.take_reports());
-        }
-    });
-    let seconds_tracing = start.elapsed().as_secs_f64();
-    let mut shared = shared.into_inner().map_err(|_| "a thread has failed".to_owned())?;
-    shared.reports.extend(world.reports.iter().cloned());
+    trace(&world, &pool, &shared, &failed, progress)?;
+    let shared = shared.into_inner().map_err(|_| "a thread has failed".to_owned())?;
+    let about = about(&world, shared.rounds, shared.rays, [seconds_preparing, start.elapsed().as_secs_f64()]);
     if let Some(Report::Fatal(message)) = shared.reports.iter().find(|report| matches!(report, Report::Fatal(_))) {
         return Err(message.clone());
     }
-    let about = About {
-        scene: scene.name.clone(),
-        samples: settings.samples,
-        seed: settings.seed,
-        paths: u64::from(settings.width) * u64::from(settings.height) * u64::from(settings.samples),
-        rays: shared.rays,
-        seconds_preparing,
-        seconds_tracing,
-        reports: reports(scene, shared.reports, &shared.dropped),
-    };
-    Ok(Image { width: settings.width, height: settings.height, channels, pixels: shared.pixels, about })
+    let about = About { reports: reports(scene, shared.reports, &shared.dropped), ..about };
+    let channels = if settings.alpha { 4 } else { 3 };
+    let pixels = shared.film.picture(settings, 0..settings.halves(), channels);
+    Ok(Image { width: settings.width, height: settings.height, channels, pixels, about })
 }
 
-/// Writes a tile's means into the image.
-fn store(pixels: &mut [f32], tile: &Tile, settings: &Settings, channels: usize, sums: &[[f64; 4]]) {
-    let scale = 1.0 / f64::from(settings.samples);
-    for (i, sum) in sums.iter().enumerate() {
-        let (x, y) = (tile.x + i as u32 % tile.width, tile.y + i as u32 / tile.width);
-        let start = (y as usize * settings.width as usize + x as usize) * channels;
-        (0..channels).for_each(|c| pixels[start + c] = (sum[c] * scale) as f32);
+/// Runs round after round; within one, each thread takes the next tile until none is left.
+fn trace(
+    world: &World,
+    pool: &rayon::ThreadPool,
+    shared: &Mutex<Shared>,
+    failed: &AtomicBool,
+    progress: &dyn Progress,
+) -> Result<(), String> {
+    let settings = world.settings;
+    let scratch: Vec<Mutex<Option<(Wave, Sums)>>> = (0..pool.current_num_threads()).map(|_| Mutex::new(None)).collect();
+    let stop = || progress.cancelled() || failed.load(Ordering::Relaxed);
+    let lost = || "a thread has failed".to_owned();
+    while !stop() {
+        let tasks = {
+            let Shared { film, rounds, .. } = &mut *shared.lock().map_err(|_| lost())?;
+            rounds.next(settings, film)
+        };
+        if tasks.is_empty() {
+            break;
+        }
+        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        pool.broadcast(|thread| {
+            let Ok(mut scratch) = scratch[thread.index()].lock() else { return };
+            let (wave, sums) = scratch.get_or_insert_with(|| (Wave::new(world), Sums::default()));
+            while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop()) {
+                let tile = Tile::number(settings, task.tile);
+                tile.render(world, wave, task.first..task.end, sums);
+                failed.fetch_or(wave.shading.failed(), Ordering::Relaxed);
+                let Ok(mut shared) = shared.lock() else { return };
+                keep(&mut shared, world, task, &tile, wave, sums);
+                if shared.rounds.late() {
+                    next.store(tasks.len(), Ordering::Relaxed);
+                }
+                drop(shared);
+                progress.tiles(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
+            }
+        });
+    }
+    Ok(())
+}
+
+/// Adds what a thread has found out of one tile to what all have.
+fn keep(shared: &mut Shared, world: &World, task: &Task, tile: &Tile, wave: &mut Wave, sums: &Sums) {
+    shared.film.add(task.tile, tile, sums, world.settings.halves());
+    shared.rounds.done(task);
+    shared.dropped.merge(&std::mem::take(&mut wave.dropped));
+    shared.rays += std::mem::take(&mut wave.rays);
+    shared.reports.extend(wave.shading.take_reports());
+}
+
+/// What is known of a render but its reports.
+fn about(world: &World, rounds: Rounds, rays: u64, [seconds_preparing, seconds_tracing]: [f64; 2]) -> About {
+    let settings = world.settings;
+    let pixels = |number: usize| {
+        let tile = Tile::number(settings, number);
+        u64::from(tile.width) * u64::from(tile.height)
+    };
+    let taken = rounds.taken();
+    About {
+        scene: world.scene.name.clone(),
+        samples: settings.samples,
+        taken: [taken.iter().copied().min().unwrap_or(0), taken.iter().copied().max().unwrap_or(0)],
+        noise: rounds.noise().filter(|_| settings.adapts()),
+        seed: settings.seed,
+        paths: taken.iter().enumerate().map(|(number, n)| pixels(number) * u64::from(*n)).sum(),
+        rays,
+        seconds_preparing,
+        seconds_tracing,
+        reports: Vec::new(),
     }
 }
 

@@ -122,7 +122,10 @@ fn write_exr(image: &Image, writer: &mut (impl Write + std::io::Seek)) -> Result
 fn note(image: &Image) -> String {
     let about = &image.about;
     let version = env!("CARGO_PKG_VERSION");
-    format!("scene={} samples={} seed={} velour={version}", about.scene, about.samples, about.seed)
+    let [fewest, most] = about.taken;
+    let samples = if fewest == most { most.to_string() } else { format!("{fewest}-{most}") };
+    let noise = about.noise.map_or(String::new(), |noise| format!(" noise={noise:.2e}"));
+    format!("scene={} samples={samples}{noise} seed={} velour={version}", about.scene, about.seed)
 }
 
 fn write_png(image: &Image, writer: &mut impl Write) -> Result<(), String> {

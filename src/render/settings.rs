@@ -22,8 +22,13 @@ pub struct Settings {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Samples a pixel.
+    /// Samples a pixel; the most of them when `noise` or `seconds` is set.
     pub samples: u32,
+    /// Stops a tile when the root of its mean square error, estimated from two half pictures, is below this; in units
+    /// of radiance, as the picture has it.
+    pub noise: Option<f32>,
+    /// Stops when this many seconds have gone by since the render began; the picture then depends on the machine.
+    pub seconds: Option<f64>,
     /// Seed of the random numbers; a scene, a seed and a sample count make one image.
     pub seed: u32,
     /// Threads; 0 takes one for each core.
@@ -42,7 +47,7 @@ pub struct Settings {
     pub show_globals: u32,
     /// Lanes of one shading batch, at most `exec::MAX_LANES`; never changes the image.
     pub batch_width: usize,
-    /// Side of a tile in pixels; never changes the image.
+    /// Side of a tile in pixels; changes no more than the last bit of the image, unless `noise` or `seconds` is set.
     pub tile_size: u32,
     /// Paths in flight in one tile; never changes the image.
     pub wave_size: usize,
@@ -56,6 +61,8 @@ impl Default for Settings {
             width: 640,
             height: 480,
             samples: 1,
+            noise: None,
+            seconds: None,
             seed: 0,
             threads: 0,
             max_bounces: 1_000_000,
@@ -77,10 +84,22 @@ impl Settings {
     pub fn with_options(mut self, options: &Options) -> Self {
         self.max_bounces = options.max_bounces.unwrap_or(self.max_bounces);
         self.rr_depth = options.rr_depth.unwrap_or(self.rr_depth);
-        self.samples = options.aa.map_or(self.samples, |aa| aa * aa);
+        // A number of samples does not mean much to a render that stops by itself.
+        let fixed = options.aa.filter(|_| !self.adapts());
+        self.samples = fixed.map_or(self.samples, |aa| aa * aa);
         self.jitter = options.no_jitter.map_or(self.jitter, |no| !no);
         self.show_globals = options.show_globals.unwrap_or(self.show_globals);
         self
+    }
+
+    /// True when the number of samples is found out while rendering.
+    pub fn adapts(&self) -> bool {
+        self.noise.is_some() || self.seconds.is_some()
+    }
+
+    /// How many independent halves the samples are split into.
+    pub(super) fn halves(&self) -> usize {
+        if self.adapts() { super::film::HALVES } else { 1 }
     }
 
     /// Says what cannot be rendered, if anything.
@@ -90,6 +109,12 @@ impl Settings {
         }
         if self.samples == 0 {
             return Err("at least one sample a pixel is needed".into());
+        }
+        if self.noise.is_some_and(|noise| !(noise > 0.0 && noise.is_finite())) {
+            return Err("the noise to stop at must be a number above 0, such as 0.01".into());
+        }
+        if self.seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds.is_finite())) {
+            return Err("the time to stop at must be a number of seconds above 0".into());
         }
         if self.tile_size == 0 || self.wave_size == 0 || self.batch_width == 0 {
             return Err("tile size, wave size and batch width must be above 0".into());

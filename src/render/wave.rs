@@ -5,7 +5,7 @@
 //! adds to its own radiance, in the order of its own bounces, so the sums do not depend on how paths were batched.
 
 use super::accel::NOTHING;
-use super::camera::tent;
+use super::film::HALVES;
 use super::light::power_heuristic;
 use super::random;
 use super::settings::LightStrategy;
@@ -68,6 +68,8 @@ impl Dropped {
 pub struct Wave {
     /// The paths.
     pub paths: Vec<Path>,
+    /// Where in its pixel each path began.
+    pub places: Vec<[f32; 2]>,
     /// Paths still on their way.
     pub active: Vec<u32>,
     /// Those that go on to the next bounce.
@@ -94,6 +96,7 @@ impl Wave {
     pub fn new(world: &World) -> Self {
         Wave {
             paths: Vec::new(),
+            places: Vec::new(),
             active: Vec::new(),
             next: Vec::new(),
             missed: Vec::new(),
@@ -111,16 +114,19 @@ impl Wave {
     /// Starts `samples` of each pixel of a row of pixels; call `clear` first.
     pub fn start(&mut self, world: &World, x: u32, y: u32, samples: std::ops::Range<u32>) {
         let settings = world.settings;
-        let seed = random::pixel_seed(settings.seed, x, y);
-        for index in samples {
-            let [jx, jy] = match settings.jitter {
+        let halves = settings.halves() as u32;
+        let seeds: [u32; HALVES] = std::array::from_fn(|half| random::pixel_seed(settings.seed, x, y, half as u32));
+        for sample in samples {
+            let (seed, index) = (seeds[(sample % halves) as usize], sample / halves);
+            let place = match settings.jitter {
                 true => {
                     let r = random::sample(seed, index, random::CAMERA);
-                    [tent(r[0]), tent(r[1])]
+                    [r[0], r[1]]
                 }
-                false => [0.0; 2],
+                false => [0.5; 2],
             };
-            let direction = world.camera.direction(x as f32 + 0.5 + jx, y as f32 + 0.5 + jy);
+            self.places.push(place);
+            let direction = world.camera.direction(x as f32 + place[0], y as f32 + place[1]);
             self.active.push(self.paths.len() as u32);
             self.paths.push(Path {
                 hit: RayHitPoint {
@@ -149,6 +155,7 @@ impl Wave {
     /// Forgets all paths.
     pub fn clear(&mut self) {
         self.paths.clear();
+        self.places.clear();
         self.active.clear();
     }
 
