@@ -4,7 +4,7 @@ use super::{CompileArgs, Failure, say, tell};
 use crate::closure::settings::{Shadowing, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::Report;
-use crate::render::{Image, Plan, Progress, Settings, output, render};
+use crate::render::{Explanation, Image, Progress, Settings, output, render};
 use crate::scene::{Scene, SceneError, ShaderFiles};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -112,7 +112,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let settings = settings(args).with_options(&scene.options);
     if args.explain {
-        say(&Plan::new(&scene, &settings).to_string());
+        say(&Explanation::new(&scene, &settings).to_string());
     }
     let bar = Bar::new();
     let image = render(&scene, &settings, &bar).map_err(Failure::Wrong)?;

@@ -1,14 +1,16 @@
 //! One batch at one bounce: shade, add emission, sample the lights, choose where each path goes on.
 
 use super::light::power_heuristic;
-use super::random::{self, Use, dimension_set};
+use super::random::{Use, dimension_set};
 use super::settings::LightStrategy;
 use super::shading::{event, ray_type};
 use super::shadow::ShadowRay;
 use super::surface::fill;
 use super::wave::{Path, Wave, emission_weight, gather};
 use super::world::{Sky, World};
+use crate::math::columns::Column3;
 use glam::Vec3;
+use multiversion::multiversion;
 
 /// A cone that bounces off a diffuse surface grows as fast as this, off a glossy one as the other: guesses on the
 /// wide side, for they only choose how much a texture is blurred.
@@ -26,14 +28,14 @@ impl Wave {
             return self.show_globals(world, batch);
         }
         self.shading.resize(batch.len());
-        for (lane, &i) in batch.iter().enumerate() {
-            fill(&mut self.shading.points, lane, &world.scene.geometry, &self.paths[i as usize].hit, &plan.needs);
-        }
+        let hits = batch.iter().map(|&i| &self.paths[i as usize].hit);
+        fill(&mut self.shading.points, &world.scene.geometry, hits, &plan.needs);
         self.shading.shade(group);
         self.add_emission(world, material, batch);
         if bounce >= world.settings.max_bounces || !plan.scatters {
             return;
         }
+        self.lanes.gather(&self.paths, batch);
         if self.shading.takes_light_samples() {
             self.sample_lights(world, batch, bounce, material);
             self.sample_sky(world, batch, bounce, material);
@@ -64,97 +66,94 @@ impl Wave {
         if world.lights.is_empty() {
             return;
         }
-        let start = self.shadows.rays.len();
+        // The third chooses among lights.
+        self.lanes.draw(dimension_set(bounce, Use::Light), if world.lights.len() > 1 { 3 } else { 2 });
+        world.lights.sample(&self.shading.points.p, &self.lanes.primitives, &self.lanes.numbers, &mut self.lit);
+        self.shading.toward.clone_from(&self.lit.direction);
+        self.weigh_lights(world);
         for (lane, &i) in batch.iter().enumerate() {
-            let path = &self.paths[i as usize];
-            let r = random::sample(path.seed, path.index, dimension_set(bounce, Use::Light));
-            let p = self.shading.points.p.get(lane);
-            let s = world.lights.sample(&world.scene.geometry, p, path.hit.primitive, r);
-            let emission = world.emission_of(s.primitive);
-            let usable = s.pdf_solid_angle > 0.0;
-            self.shading.toward.set(lane, s.direction);
+            let weight = self.weights.get(lane);
+            // Most lanes that bring nothing face away from the light.
+            if weight == Vec3::ZERO {
+                continue;
+            }
+            let target = self.lit.primitive[lane];
+            let emission = world.emission_of(target);
+            let contribution = weight * emission.unwrap_or(Vec3::ONE);
+            if !contribution.is_finite() {
+                self.dropped.add(material);
+                continue;
+            }
+            if contribution == Vec3::ZERO {
+                continue;
+            }
+            let (direction, from) = (self.lit.direction.get(lane), self.lanes.primitives[lane]);
+            let (p, ng) = (self.shading.points.p.get(lane), self.shading.points.ng.get(lane));
             self.shadows.rays.push(ShadowRay {
-                origin: p,
-                direction: s.direction,
-                distance: s.distance,
-                // The density rides along until the lobes are evaluated.
-                contribution: if usable { emission.unwrap_or(Vec3::ONE) / s.pdf_solid_angle } else { Vec3::ZERO },
+                origin: world.accel.leave(p, ng, direction, from),
+                direction,
+                distance: self.lit.distance[lane],
+                contribution,
                 known: emission.is_some(),
                 path: i,
-                from: path.hit.primitive,
-                target: s.primitive,
-                u: s.u,
-                v: s.v,
+                from,
+                target,
+                u: self.lit.u[lane],
+                v: self.lit.v[lane],
             });
-            self.densities[lane] = s.pdf_solid_angle;
         }
-        self.keep_useful(world, start, material, false);
     }
 
     fn sample_sky(&mut self, world: &World, batch: &[u32], bounce: u32, material: usize) {
         let Sky::Shader { table: Some(table), .. } = &world.sky else { return };
-        let start = self.sky_shadows.rays.len();
-        for (lane, &i) in batch.iter().enumerate() {
-            let path = &self.paths[i as usize];
-            let r = random::sample(path.seed, path.index, dimension_set(bounce, Use::Sky));
-            let (direction, pdf) = table.sample(r[0], r[1]);
+        self.lanes.draw(dimension_set(bounce, Use::Sky), 2);
+        self.lit.resize(batch.len());
+        for lane in 0..batch.len() {
+            let (direction, pdf) = table.sample(self.lanes.numbers[0][lane], self.lanes.numbers[1][lane]);
             self.shading.toward.set(lane, direction);
-            self.sky_shadows.rays.push(ShadowRay {
-                origin: self.shading.points.p.get(lane),
-                direction,
-                distance: f32::INFINITY,
-                contribution: if pdf > 0.0 { Vec3::splat(1.0 / pdf) } else { Vec3::ZERO },
-                known: false,
-                path: i,
-                from: path.hit.primitive,
-                target: super::accel::NOTHING,
-                u: 0.0,
-                v: 0.0,
-            });
-            self.densities[lane] = pdf;
+            self.lit.pdf_solid_angle[lane] = pdf;
         }
-        self.keep_useful(world, start, material, true);
+        self.weigh_lights(world);
+        for (lane, &i) in batch.iter().enumerate() {
+            let contribution = self.weights.get(lane);
+            if !contribution.is_finite() {
+                self.dropped.add(material);
+            } else if contribution != Vec3::ZERO {
+                let (direction, from) = (self.shading.toward.get(lane), self.lanes.primitives[lane]);
+                let (p, ng) = (self.shading.points.p.get(lane), self.shading.points.ng.get(lane));
+                self.sky_shadows.rays.push(ShadowRay {
+                    origin: world.accel.leave(p, ng, direction, from),
+                    direction,
+                    distance: f32::INFINITY,
+                    contribution,
+                    known: false,
+                    path: i,
+                    from,
+                    target: super::accel::NOTHING,
+                    u: 0.0,
+                    v: 0.0,
+                });
+            }
+        }
     }
 
-    /// Evaluates the lobes toward the queued directions and keeps the rays that can bring something.
-    fn keep_useful(&mut self, world: &World, start: usize, material: usize, sky: bool) {
+    /// Evaluates the lobes toward the sampled lights; what a unit of radiance there adds goes to `weights`.
+    fn weigh_lights(&mut self, world: &World) {
         self.shading.evaluate();
-        let rays = if sky { &mut self.sky_shadows.rays } else { &mut self.shadows.rays };
-        let mut kept = start;
-        for lane in 0..rays.len() - start {
-            let mut ray = rays[start + lane];
-            let f_cos = self.shading.evaluation.f_cos.get(lane);
-            if ray.contribution == Vec3::ZERO || f_cos == Vec3::ZERO {
-                continue;
-            }
-            let weight = match world.settings.lights {
-                LightStrategy::Combined => power_heuristic(self.densities[lane], self.shading.evaluation.pdf[lane]),
-                _ => 1.0,
-            };
-            ray.contribution *= self.paths[ray.path as usize].throughput * f_cos * weight;
-            if !ray.contribution.is_finite() {
-                self.dropped.add(material);
-                continue;
-            }
-            if ray.contribution == Vec3::ZERO {
-                continue;
-            }
-            let ng = self.shading.points.ng.get(lane);
-            let origin = world.accel.leave(ray.origin, ng, ray.direction, ray.from);
-            ray.origin = origin;
-            rays[kept] = ray;
-            kept += 1;
-        }
-        rays.truncate(kept);
+        let combined = world.settings.lights == LightStrategy::Combined;
+        self.weights.resize(self.lanes.seeds.len());
+        let (evaluation, throughput) = (&self.shading.evaluation, &self.lanes.throughput);
+        let out = [&mut self.weights.x, &mut self.weights.y, &mut self.weights.z].map(Vec::as_mut_slice);
+        weigh(&self.lit.pdf_solid_angle, &evaluation.pdf, &evaluation.f_cos, throughput, combined, out);
     }
 
     /// Samples a direction for each path and sends on those that still carry something.
     fn scatter(&mut self, world: &World, batch: &[u32], bounce: u32, material: usize) {
-        for (lane, &i) in batch.iter().enumerate() {
-            let path = &self.paths[i as usize];
-            let r = random::sample(path.seed, path.index, dimension_set(bounce, Use::Scatter));
-            self.shading.random.set(lane, Vec3::new(r[0], r[1], r[2]));
-            self.densities[lane] = r[3];
+        let roulette = bounce >= world.settings.rr_depth;
+        self.lanes.draw(dimension_set(bounce, Use::Scatter), if roulette { 4 } else { 3 });
+        let random = &mut self.shading.random;
+        for (column, numbers) in [&mut random.x, &mut random.y, &mut random.z].into_iter().zip(&self.lanes.numbers) {
+            column.copy_from_slice(numbers);
         }
         self.shading.sample();
         for (lane, &i) in batch.iter().enumerate() {
@@ -180,9 +179,9 @@ impl Wave {
             } else {
                 path.clear = false;
             }
-            if bounce >= world.settings.rr_depth {
+            if roulette {
                 let survival = carried.min(if bounce > DEEP { 0.95 } else { 1.0 });
-                if self.densities[lane] >= survival {
+                if self.lanes.numbers[3][lane] >= survival {
                     continue;
                 }
                 throughput /= survival;
@@ -212,10 +211,10 @@ impl Wave {
     fn show_globals(&mut self, world: &World, batch: &[u32]) {
         let needs = super::plan::Needs { uv: true, tangents: true, ..Default::default() };
         self.shading.resize(batch.len());
+        let points = &mut self.shading.points;
+        fill(points, &world.scene.geometry, batch.iter().map(|&i| &self.paths[i as usize].hit), &needs);
         for (lane, &i) in batch.iter().enumerate() {
             let path = &mut self.paths[i as usize];
-            let points = &mut self.shading.points;
-            fill(points, lane, &world.scene.geometry, &path.hit, &needs);
             let shown = match world.settings.show_globals {
                 1 => points.ng.get(lane),
                 2 => points.n.get(lane),
@@ -227,6 +226,23 @@ impl Wave {
                 }
             };
             path.radiance = shown * 0.5 + Vec3::splat(0.5);
+        }
+    }
+}
+
+/// What a unit of a light's radiance adds to each lane's path: throughput times f |cos| / density, times the weight
+/// against scattering when the two are combined.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+fn weigh(own: &[f32], other: &[f32], f_cos: &Column3, throughput: &Column3, combined: bool, out: [&mut [f32]; 3]) {
+    let n = own.len();
+    let other = &other[..n];
+    let columns = [(&f_cos.x, &throughput.x), (&f_cos.y, &throughput.y), (&f_cos.z, &throughput.z)];
+    for (out, (f_cos, throughput)) in out.into_iter().zip(columns) {
+        let (out, f_cos, throughput) = (&mut out[..n], &f_cos[..n], &throughput[..n]);
+        for i in 0..n {
+            let heuristic = if combined { power_heuristic(own[i], other[i]) } else { 1.0 };
+            let scale = if own[i] > 0.0 { heuristic / own[i] } else { 0.0 };
+            out[i] = throughput[i] * f_cos[i] * scale;
         }
     }
 }

@@ -1,24 +1,55 @@
 //! Area lights: which primitives emit, how one is chosen, and how a point on it is.
 
+use super::surface::Form;
+use crate::math::columns::Column3;
 use crate::scene::{Geometry, Shape};
 use glam::Vec3;
+use multiversion::multiversion;
 use std::f32::consts::PI;
 
-/// A direction toward a light.
-#[derive(Clone, Copy, Debug)]
-pub struct LightSample {
+/// Directions toward lights, one a lane.
+#[derive(Clone, Debug, Default)]
+pub struct LightLanes {
     /// The unit direction.
-    pub direction: Vec3,
+    pub direction: Column3,
     /// The distance to the light.
-    pub distance: f32,
+    pub distance: Vec<f32>,
     /// Density of the direction over solid angle, the choice of the light included; 0 when there is no sample.
-    pub pdf_solid_angle: f32,
+    pub pdf_solid_angle: Vec<f32>,
     /// The light's primitive.
-    pub primitive: u32,
+    pub primitive: Vec<u32>,
     /// Surface coordinates, as `accel::Hit` has them.
-    pub u: f32,
+    pub u: Vec<f32>,
     /// Surface coordinates, as `accel::Hit` has them.
-    pub v: f32,
+    pub v: Vec<f32>,
+}
+
+impl LightLanes {
+    /// Makes room for `len` lanes.
+    pub fn resize(&mut self, len: usize) {
+        self.direction.resize(len);
+        self.primitive.resize(len, 0);
+        for column in [&mut self.distance, &mut self.pdf_solid_angle, &mut self.u, &mut self.v] {
+            column.resize(len, 0.0);
+        }
+    }
+}
+
+/// One direction toward a light.
+#[derive(Clone, Copy, Debug)]
+struct LightSample {
+    direction: Vec3,
+    distance: f32,
+    pdf_solid_angle: f32,
+}
+
+/// A light as samplers see it.
+#[derive(Clone, Copy, Debug)]
+struct LightForm {
+    form: Form,
+    /// Normal of a flat light, as long as its area; nothing for a sphere.
+    area: Vec3,
+    triangle: bool,
 }
 
 /// The lights of a scene and the probability of each.
@@ -29,6 +60,10 @@ pub struct Lights {
     cumulative: Vec<f32>,
     /// Probability of each primitive of the scene; empty when there is no light.
     chance: Vec<f32>,
+    /// The shapes, beside `primitives`.
+    forms: Vec<LightForm>,
+    /// Any of them is a sphere.
+    any_round: bool,
 }
 
 impl Lights {
@@ -51,6 +86,9 @@ impl Lights {
             let before = running as f32;
             running += (clean(power) + floor) / sum;
             lights.primitives.push(primitive);
+            let form = LightForm::new(&geometry.primitives[primitive as usize].shape);
+            lights.any_round |= form.form.round;
+            lights.forms.push(form);
             lights.cumulative.push(running as f32);
             // The chance is the difference of the rounded sums, which is exactly how often the search gives it.
             lights.chance[primitive as usize] = running as f32 - before;
@@ -66,32 +104,38 @@ impl Lights {
         self.primitives.is_empty()
     }
 
-    /// Chooses a light and a point on it as seen from `p`; `from` is the primitive that `p` lies on.
-    #[inline]
-    pub fn sample(&self, geometry: &Geometry, p: Vec3, from: u32, [x, y, z, _]: [f32; 4]) -> LightSample {
-        let index = match self.primitives.len() {
-            1 => 0,
-            n => self.cumulative.partition_point(|c| *c <= z).min(n - 1),
-        };
-        let primitive = self.primitives[index];
-        let chance = self.chance[primitive as usize];
-        let mut sample = match geometry.primitives[primitive as usize].shape {
-            Shape::Sphere { center, radius } => sample_sphere(center, radius, p, primitive == from, x, y),
-            _ if primitive == from => None,
-            Shape::Quad { corner, edge_x, edge_y } => {
-                let normal = edge_x.cross(edge_y);
-                toward(corner + x * edge_x + y * edge_y - p, normal, 1.0).map(|s| LightSample { u: x, v: y, ..s })
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.primitives.len()
+    }
+
+    /// Chooses a light a lane and a point on it as seen from `p`; a lane of `from` is the primitive that its `p` lies
+    /// on. The first two numbers of a lane choose the point, the third the light.
+    pub fn sample(&self, p: &Column3, from: &[u32], numbers: &[Vec<f32>; 4], out: &mut LightLanes) {
+        out.resize(from.len());
+        let mut block = LightBlock::new();
+        for start in (0..from.len()).step_by(WIDTH) {
+            let len = WIDTH.min(from.len() - start);
+            let mut chosen = [0; WIDTH];
+            for k in 0..len {
+                let lane = start + k;
+                let index = match self.primitives.len() {
+                    1 => 0,
+                    n => self.cumulative.partition_point(|c| *c <= numbers[2][lane]).min(n - 1),
+                };
+                out.primitive[lane] = self.primitives[index];
+                block.load(k, p.get(lane), &self.forms[index], [numbers[0][lane], numbers[1][lane]]);
+                block.usable[k] = u32::from(self.primitives[index] != from[lane]);
+                chosen[k] = index;
+                block.chance[k] = self.chance[self.primitives[index] as usize];
             }
-            Shape::Triangle { a, b, c } => {
-                let (u, v) = square_to_triangle(x, y);
-                let point = (1.0 - u - v) * a + u * b + v * c;
-                toward(point - p, (b - a).cross(c - a), 0.5).map(|s| LightSample { u, v, ..s })
+            flat_block(&mut block);
+            for k in (0..len).filter(|_| self.any_round) {
+                let light = &self.forms[chosen[k]];
+                block.round(k, light, out.primitive[start + k] == from[start + k]);
             }
+            block.store(start, len, out);
         }
-        .unwrap_or(NO_SAMPLE);
-        sample.primitive = primitive;
-        sample.pdf_solid_angle *= chance;
-        sample
     }
 
     /// Density with which `sample` would have chosen the hit that a ray has made; 0 for what is no light.
@@ -122,8 +166,121 @@ impl Lights {
     }
 }
 
-const NO_SAMPLE: LightSample =
-    LightSample { direction: Vec3::Y, distance: 0.0, pdf_solid_angle: 0.0, primitive: 0, u: 0.0, v: 0.0 };
+impl LightForm {
+    fn new(shape: &Shape) -> Self {
+        let form = Form::new(shape);
+        let triangle = matches!(shape, Shape::Triangle { .. });
+        LightForm { form, area: form.b.cross(form.c) * if triangle { 0.5 } else { 1.0 }, triangle }
+    }
+}
+
+/// Lanes that are worked on at a time.
+const WIDTH: usize = 16;
+type Block = [f32; WIDTH];
+type Block3 = [Block; 3];
+
+/// A few lanes' lights, a row a number.
+struct LightBlock {
+    p: Block3,
+    a: Block3,
+    b: Block3,
+    c: Block3,
+    area: Block3,
+    x: Block,
+    y: Block,
+    chance: Block,
+    triangle: [u32; WIDTH],
+    usable: [u32; WIDTH],
+    direction: Block3,
+    distance: Block,
+    pdf: Block,
+}
+
+#[inline(always)]
+fn set(block: &mut Block3, lane: usize, v: Vec3) {
+    (block[0][lane], block[1][lane], block[2][lane]) = (v.x, v.y, v.z);
+}
+
+#[inline(always)]
+fn get(block: &Block3, lane: usize) -> Vec3 {
+    Vec3::new(block[0][lane], block[1][lane], block[2][lane])
+}
+
+impl LightBlock {
+    fn new() -> Self {
+        let (row, zero) = ([0.0; WIDTH], [[0.0; WIDTH]; 3]);
+        LightBlock {
+            p: zero,
+            a: zero,
+            b: zero,
+            c: zero,
+            area: zero,
+            x: row,
+            y: row,
+            chance: row,
+            triangle: [0; WIDTH],
+            usable: [0; WIDTH],
+            direction: zero,
+            distance: row,
+            pdf: row,
+        }
+    }
+
+    #[inline(always)]
+    fn load(&mut self, k: usize, p: Vec3, light: &LightForm, [x, y]: [f32; 2]) {
+        set(&mut self.p, k, p);
+        set(&mut self.a, k, light.form.a);
+        set(&mut self.b, k, light.form.b);
+        set(&mut self.c, k, light.form.c);
+        set(&mut self.area, k, light.area);
+        (self.x[k], self.y[k]) = (x, y);
+        self.triangle[k] = u32::from(light.triangle);
+    }
+
+    /// Does a sphere's lane over again; `on` says that the lane lies on it.
+    fn round(&mut self, k: usize, light: &LightForm, on: bool) {
+        if !light.form.round {
+            return;
+        }
+        let sample = sample_sphere(light.form.a, light.form.b.x, get(&self.p, k), on, self.x[k], self.y[k]);
+        self.pdf[k] = sample.map_or(0.0, |s| s.pdf_solid_angle * self.chance[k]);
+        self.distance[k] = sample.map_or(0.0, |s| s.distance);
+        set(&mut self.direction, k, sample.map_or(Vec3::Y, |s| s.direction));
+        (self.x[k], self.y[k]) = (0.0, 0.0);
+    }
+
+    fn store(&self, start: usize, len: usize, out: &mut LightLanes) {
+        let lanes = start..start + len;
+        out.direction.x[lanes.clone()].copy_from_slice(&self.direction[0][..len]);
+        out.direction.y[lanes.clone()].copy_from_slice(&self.direction[1][..len]);
+        out.direction.z[lanes.clone()].copy_from_slice(&self.direction[2][..len]);
+        out.distance[lanes.clone()].copy_from_slice(&self.distance[..len]);
+        out.pdf_solid_angle[lanes.clone()].copy_from_slice(&self.pdf[..len]);
+        out.u[lanes.clone()].copy_from_slice(&self.x[..len]);
+        out.v[lanes].copy_from_slice(&self.y[..len]);
+    }
+}
+
+/// Samples all lanes as if their lights were flat.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+fn flat_block(block: &mut LightBlock) {
+    for k in 0..WIDTH {
+        let (x, y) = (block.x[k], block.y[k]);
+        let (tx, ty) = square_to_triangle(x, y);
+        let triangle = block.triangle[k] != 0;
+        let (u, v) = (if triangle { tx } else { x }, if triangle { ty } else { y });
+        let to = get(&block.a, k) + u * get(&block.b, k) + v * get(&block.c, k) - get(&block.p, k);
+        let distance = to.length();
+        let direction = to / distance;
+        let pdf = distance * distance / get(&block.area, k).dot(direction).abs();
+        // Neither a point on the light, nor one in its plane, nor a light without extent can be sampled.
+        let good = (block.usable[k] != 0) & (distance > 0.0) & (pdf < f32::INFINITY);
+        block.pdf[k] = if good { pdf * block.chance[k] } else { 0.0 };
+        block.distance[k] = distance;
+        set(&mut block.direction, k, if good { direction } else { Vec3::Y });
+        (block.x[k], block.y[k]) = (u, v);
+    }
+}
 
 /// A point of a flat light as seen from the origin; `normal` times `scale` is as long as the light's area.
 #[inline]
@@ -132,12 +289,7 @@ fn toward(to: Vec3, normal: Vec3, scale: f32) -> Option<LightSample> {
     let direction = to / distance;
     let cos_area = normal.dot(direction).abs() * scale;
     let pdf_solid_angle = distance * distance / cos_area;
-    (distance > 0.0 && pdf_solid_angle.is_finite()).then_some(LightSample {
-        direction,
-        distance,
-        pdf_solid_angle,
-        ..NO_SAMPLE
-    })
+    (distance > 0.0 && pdf_solid_angle.is_finite()).then_some(LightSample { direction, distance, pdf_solid_angle })
 }
 
 /// Density of a uniform direction in the cone that a sphere fills, from the square of the cone's sine.
@@ -173,23 +325,20 @@ fn sample_sphere(center: Vec3, radius: f32, p: Vec3, on: bool, x: f32, y: f32) -
     let direction = (axis * cos + t * (sin * cos_phi) + b * (sin * sin_phi)).normalize();
     let near = distance * cos - (radius * radius - distance2 * sin2).max(0.0).sqrt();
     let pdf_solid_angle = 1.0 / (2.0 * PI * one_minus_cos_max);
-    Some(LightSample { direction, distance: near.max(0.0), pdf_solid_angle, ..NO_SAMPLE })
+    Some(LightSample { direction, distance: near.max(0.0), pdf_solid_angle })
 }
 
 /// Source: E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
-fn square_to_triangle(mut x: f32, mut y: f32) -> (f32, f32) {
-    if y > x {
-        x *= 0.5;
-        y -= x;
-    } else {
-        y *= 0.5;
-        x -= y;
-    }
-    (x, y)
+#[inline(always)]
+fn square_to_triangle(x: f32, y: f32) -> (f32, f32) {
+    let above = y > x;
+    let (near, far) = if above { (x, y) } else { (y, x) };
+    let (half, rest) = (0.5 * near, far - 0.5 * near);
+    if above { (half, rest) } else { (rest, half) }
 }
 
 /// The power heuristic: the weight of a sample of density `own` against a method that would give it `other`.
-#[inline]
+#[inline(always)]
 pub fn power_heuristic(own: f32, other: f32) -> f32 {
     // The ratio keeps infinite densities (one possible direction) and huge ones from overflowing.
     if own > other {

@@ -12,10 +12,12 @@
 pub mod accel;
 mod bounce;
 mod camera;
+mod explain;
 mod few;
 mod film;
 mod host;
 mod image;
+mod lanes;
 pub mod light;
 pub mod output;
 mod plan;
@@ -31,6 +33,7 @@ mod tile;
 mod wave;
 mod world;
 
+pub use explain::{Explanation, MaterialNeeds, Saving};
 pub use image::{About, Image};
 pub use plan::Plan;
 pub use progress::{Progress, Silent};

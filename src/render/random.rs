@@ -4,6 +4,7 @@
 //! the same ones at the same bounce whatever happened before, so that paths of a pixel stay stratified against each
 //! other however they branch.
 
+use multiversion::multiversion;
 use sobol_burley::{NUM_DIMENSION_SETS_4D, parts};
 use std::sync::LazyLock;
 
@@ -34,52 +35,91 @@ pub fn pixel_seed(seed: u32, x: u32, y: u32, half: u32) -> u32 {
     mix(mix(mix(seed ^ 0x9e37_79b9).wrapping_add(x)).wrapping_add(y)) ^ half.wrapping_mul(0xa511_e9b3)
 }
 
-/// Four numbers in [0, 1) of sample `index` of a pixel.
+/// Lanes that are worked on at a time.
+const WIDTH: usize = 16;
+
+/// Up to four numbers in [0, 1) a lane, a column each: of sample `indices[i]` of the pixel of `seeds[i]`; all of one
+/// length.
 ///
 /// The Sobol points are good to 2^16 samples; each further block of as many gets a scramble of its own. Beyond the
 /// dimensions the tables hold, some twenty bounces deep, plain hashing takes over: stratification gains nothing there.
-#[inline]
-pub fn sample(seed: u32, index: u32, set: u32) -> [f32; 4] {
-    let block = index >> 16;
-    let seed = if block == 0 { seed } else { mix(seed ^ block.wrapping_mul(0x85eb_ca6b)) };
-    if set < NUM_DIMENSION_SETS_4D {
-        return sobol(index & 0xffff, set, seed);
+pub fn fill(seeds: &[u32], indices: &[u32], set: u32, out: &mut [Vec<f32>]) {
+    match VECTORS.get(set as usize) {
+        Some(vectors) => sobol_lanes(seeds, indices, set, vectors, out),
+        None => hash_lanes(seeds, indices, set, out),
     }
-    let mut state = mix(mix(seed ^ index).wrapping_add(set));
-    std::array::from_fn(|_| {
-        state = mix(state.wrapping_add(0x9e37_79b9));
-        (state >> 8) as f32 * (1.0 / 16_777_216.0)
-    })
 }
 
-/// Sums of the generator vectors for the four nibbles of a 16-bit index, 64 entries a set of dimensions.
-///
-/// A Sobol number is a sum (XOR) of one vector for each bit of its index. The crate walks the set bits, eight of them in
-/// the mean, with a branch that cannot be predicted; four look-ups give the same number.
-static NIBBLES: LazyLock<Vec<[u32; 4]>> = LazyLock::new(|| {
-    let entry = |i: u32| {
-        let (set, nibble, value) = (i / 64, i / 16 % 4, i % 16);
-        <[u32; 4]>::from(parts::sobol_int4_rev(value << (28 - 4 * nibble), set))
-    };
-    (0..NUM_DIMENSION_SETS_4D * 64).map(entry).collect()
+/// The four numbers of one sample.
+pub fn sample(seed: u32, index: u32, set: u32) -> [f32; 4] {
+    let mut out = [const { Vec::new() }; 4];
+    out.iter_mut().for_each(|column| column.push(0.0));
+    fill(&[seed], &[index], set, &mut out);
+    out.map(|column| column[0])
+}
+
+/// Generator vectors, bits reversed, of the sixteen bits of an index; for each set of four dimensions.
+type Vectors = [[u32; 4]; 16];
+
+/// A Sobol number is a sum (XOR) of one vector for each bit of its index.
+static VECTORS: LazyLock<Vec<Vectors>> = LazyLock::new(|| {
+    let vector = |set, bit: usize| parts::sobol_int4_rev(1 << (31 - bit), set).into();
+    (0..NUM_DIMENSION_SETS_4D).map(|set| std::array::from_fn(|bit| vector(set, bit))).collect()
 });
 
-/// Same numbers as `sobol_burley::sample_4d`, which see for the scrambling.
-#[inline]
-fn sobol(index: u32, set: u32, seed: u32) -> [f32; 4] {
-    let index = parts::owen_scramble_rev(index.reverse_bits(), parts::hash(seed ^ 0x79c6_8e4a));
-    let table = &NIBBLES[set as usize * 64..set as usize * 64 + 64];
-    let part = |nibble: u32| table[(nibble * 16 + ((index >> (28 - 4 * nibble)) & 15)) as usize];
-    let (a, b, c, d) = (part(0), part(1), part(2), part(3));
-    let sum: [u32; 4] = std::array::from_fn(|k| a[k] ^ b[k] ^ c[k] ^ d[k]);
-    let common = seed.wrapping_mul(0x9c8f_2d3b) ^ set;
-    let scramble = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|k: u32| k ^ common);
-    let scrambled = parts::owen_scramble_int4_rev(sum.into(), parts::hash_int4(scramble.into()));
-    scrambled.reverse_bits().to_f32_norm()
+/// Same numbers as `sobol_burley::sample_4d`, which see for the scrambling; lanes in blocks, so that a block's sums stay
+/// in registers.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl+avx512dq"))]
+fn sobol_lanes(seeds: &[u32], indices: &[u32], set: u32, vectors: &Vectors, out: &mut [Vec<f32>]) {
+    for start in (0..seeds.len()).step_by(WIDTH) {
+        let len = WIDTH.min(seeds.len() - start);
+        let (mut seed, mut index) = ([0; WIDTH], [0; WIDTH]);
+        seed[..len].copy_from_slice(&seeds[start..start + len]);
+        index[..len].copy_from_slice(&indices[start..start + len]);
+        for i in 0..WIDTH {
+            let other = mix(seed[i] ^ (index[i] >> 16).wrapping_mul(0x85eb_ca6b));
+            seed[i] = if index[i] >> 16 == 0 { seed[i] } else { other };
+            let shuffle = parts::hash(seed[i] ^ 0x79c6_8e4a);
+            index[i] = parts::owen_scramble_rev((index[i] & 0xffff).reverse_bits(), shuffle);
+        }
+        const KEYS: [u32; 4] = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8];
+        for (k, (column, key)) in out.iter_mut().zip(KEYS).enumerate() {
+            let mut sum = [0; WIDTH];
+            for (bit, vector) in vectors.iter().enumerate() {
+                for i in 0..WIDTH {
+                    sum[i] ^= vector[k] & (((index[i] << bit) as i32 >> 31) as u32);
+                }
+            }
+            let mut block = [0.0; WIDTH];
+            for i in 0..WIDTH {
+                let scramble = parts::hash(seed[i].wrapping_mul(0x9c8f_2d3b) ^ set ^ key);
+                block[i] = unit(parts::owen_scramble_rev(sum[i], scramble).reverse_bits());
+            }
+            column[start..start + len].copy_from_slice(&block[..len]);
+        }
+    }
+}
+
+/// Numbers without any order, for sets beyond the tables.
+fn hash_lanes(seeds: &[u32], indices: &[u32], set: u32, out: &mut [Vec<f32>]) {
+    for i in 0..seeds.len() {
+        let mut state = mix(mix(seeds[i] ^ indices[i]).wrapping_add(set));
+        for column in out.iter_mut() {
+            state = mix(state.wrapping_add(0x9e37_79b9));
+            column[i] = unit(state);
+        }
+    }
+}
+
+/// The upper 23 bits as a number in [0, 1).
+#[inline(always)]
+fn unit(bits: u32) -> f32 {
+    f32::from_bits((bits >> 9) | 0x3f80_0000) - 1.0
 }
 
 /// A 32-bit mixer with low bias. Source: C. Wellons, hash-prospector, the two-round multiply-xorshift
 /// 21f0aaad/d35a2d97.
+#[inline(always)]
 fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x21f0_aaad);
@@ -102,9 +142,18 @@ mod tests {
     }
 
     #[test]
-    fn the_tables_give_the_same_numbers_as_the_crate() {
-        for (index, set, seed) in (0..2000).map(|i| (i * 31 % 65_536, i % NUM_DIMENSION_SETS_4D, mix(i))) {
-            assert_eq!(sobol(index, set, seed), sobol_burley::sample_4d(index, set, seed));
+    fn lanes_give_the_same_numbers_as_the_crate() {
+        let cases: Vec<(u32, u32)> = (0..2000).map(|i| (mix(i), i * 31 % 65_536)).collect();
+        let (seeds, indices): (Vec<u32>, Vec<u32>) = cases.into_iter().unzip();
+        for set in 0..NUM_DIMENSION_SETS_4D {
+            let mut out = [const { Vec::new() }; 4];
+            out.iter_mut().for_each(|column: &mut Vec<f32>| column.resize(77, 0.0));
+            let from = set as usize * 7;
+            let (seeds, indices) = (&seeds[from..from + 77], &indices[from..from + 77]);
+            fill(seeds, indices, set, &mut out);
+            for i in 0..77 {
+                assert_eq!(out.each_ref().map(|column| column[i]), sobol_burley::sample_4d(indices[i], set, seeds[i]));
+            }
         }
     }
 

@@ -41,6 +41,8 @@ pub struct ShadowQueue {
     clear: Vec<u32>,
     /// Of those, the ones whose light must be shaded, with the light's material.
     reached: Vec<(u32, u32)>,
+    /// Of a batch of those, the points.
+    hits: Vec<RayHitPoint>,
 }
 
 impl Wave {
@@ -82,13 +84,16 @@ impl Wave {
             let (group, plan) = world.material(material);
             for batch in run.chunks(world.settings.batch_width.clamp(1, crate::exec::MAX_LANES)) {
                 self.shading.resize(batch.len());
-                for (lane, &(_, i)) in batch.iter().enumerate() {
-                    let ray = &queue.rays[i as usize];
-                    if ray.target == NOTHING {
+                let rays = batch.iter().map(|&(_, i)| &queue.rays[i as usize]);
+                // A queue is all lights or all background.
+                if queue.rays[batch[0].1 as usize].target == NOTHING {
+                    for (lane, ray) in rays.enumerate() {
                         fill_sky(&mut self.shading, lane, ray.direction, ray_type::SHADOW);
-                    } else {
-                        fill(&mut self.shading.points, lane, &world.scene.geometry, &ray.hit(), &plan.needs);
                     }
+                } else {
+                    queue.hits.clear();
+                    queue.hits.extend(rays.map(ShadowRay::hit));
+                    fill(&mut self.shading.points, &world.scene.geometry, queue.hits.iter(), &plan.needs);
                 }
                 self.shading.shade(group);
                 for (lane, &(_, i)) in batch.iter().enumerate() {

@@ -2,8 +2,10 @@
 
 use super::plan::Needs;
 use crate::exec::Points;
+use crate::math::columns::Column3;
 use crate::scene::{Geometry, Primitive, Shape};
 use glam::{Vec2, Vec3};
+use multiversion::multiversion;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// A ray and where it hits.
@@ -29,45 +31,169 @@ pub struct RayHitPoint {
     pub ray_type: i32,
 }
 
+/// A shape as three vectors: centre and radius, or a corner and two edges.
+#[derive(Clone, Copy, Debug)]
+pub struct Form {
+    /// The centre, the corner or the first vertex.
+    pub a: Vec3,
+    /// The first edge; the radius for a sphere.
+    pub b: Vec3,
+    /// The second edge.
+    pub c: Vec3,
+    /// True for a sphere.
+    pub round: bool,
+}
+
+impl Form {
+    /// The form of a shape.
+    #[inline(always)]
+    pub fn new(shape: &Shape) -> Self {
+        match *shape {
+            Shape::Sphere { center, radius } => Form { a: center, b: Vec3::splat(radius), c: Vec3::ZERO, round: true },
+            Shape::Quad { corner, edge_x, edge_y } => Form { a: corner, b: edge_x, c: edge_y, round: false },
+            Shape::Triangle { a, b, c } => Form { a, b: b - a, c: c - a, round: false },
+        }
+    }
+
+    /// Position and geometric normal (unit, outward, not turned) of the hit of a ray at `t`, `u` and `v`.
+    #[inline(always)]
+    fn place(&self, origin: Vec3, direction: Vec3, t: f32, u: f32, v: f32) -> (Vec3, Vec3) {
+        let across = self.b.cross(self.c);
+        let from = origin + t * direction - self.a;
+        let long = if self.round { from } else { across };
+        let length = long.length();
+        let n = if length > 0.0 { long / length } else { Vec3::Y };
+        let p = if self.round { self.a + self.b.x * n } else { self.a + u * self.b + v * self.c };
+        (p, n)
+    }
+}
+
 /// Position and geometric normal (unit, outward, not turned) of a hit.
 #[inline]
 pub fn place(geometry: &Geometry, hit: &RayHitPoint) -> (Vec3, Vec3) {
-    match geometry.primitives[hit.primitive as usize].shape {
-        Shape::Sphere { center, radius } => {
-            let n = (hit.origin + hit.t * hit.direction - center).normalize_or(Vec3::Y);
-            (center + radius * n, n)
+    Form::new(&geometry.primitives[hit.primitive as usize].shape).place(hit.origin, hit.direction, hit.t, hit.u, hit.v)
+}
+
+/// Rays that are worked on at a time.
+const WIDTH: usize = 16;
+type Block = [f32; WIDTH];
+type Block3 = [Block; 3];
+
+/// The hits of a few rays, a row a number, so that all rows of a step fit the registers or the nearest cache.
+struct Hits {
+    origin: Block3,
+    direction: Block3,
+    place: Block3,
+    form: [Block3; 3],
+    round: [u32; WIDTH],
+    p: Block3,
+    outward: Block3,
+    facing: Block3,
+    behind: [i32; WIDTH],
+}
+
+#[inline(always)]
+fn set(block: &mut Block3, lane: usize, v: Vec3) {
+    (block[0][lane], block[1][lane], block[2][lane]) = (v.x, v.y, v.z);
+}
+
+#[inline(always)]
+fn get(block: &Block3, lane: usize) -> Vec3 {
+    Vec3::new(block[0][lane], block[1][lane], block[2][lane])
+}
+
+#[inline(always)]
+fn store(column: &mut Column3, start: usize, len: usize, block: &Block3) {
+    column.x[start..start + len].copy_from_slice(&block[0][..len]);
+    column.y[start..start + len].copy_from_slice(&block[1][..len]);
+    column.z[start..start + len].copy_from_slice(&block[2][..len]);
+}
+
+impl Hits {
+    fn new() -> Self {
+        let zero = [[0.0; WIDTH]; 3];
+        Hits {
+            origin: zero,
+            direction: zero,
+            place: zero,
+            form: [zero; 3],
+            round: [0; WIDTH],
+            p: zero,
+            outward: zero,
+            facing: zero,
+            behind: [0; WIDTH],
         }
-        Shape::Quad { corner, edge_x, edge_y } => {
-            (corner + hit.u * edge_x + hit.v * edge_y, edge_x.cross(edge_y).normalize())
+    }
+
+    #[inline(always)]
+    fn load(&mut self, lane: usize, hit: &RayHitPoint, shape: &Shape) {
+        let form = Form::new(shape);
+        set(&mut self.origin, lane, hit.origin);
+        set(&mut self.direction, lane, hit.direction);
+        set(&mut self.place, lane, Vec3::new(hit.t, hit.u, hit.v));
+        set(&mut self.form[0], lane, form.a);
+        set(&mut self.form[1], lane, form.b);
+        set(&mut self.form[2], lane, form.c);
+        self.round[lane] = u32::from(form.round);
+    }
+}
+
+/// Places all rays' hits and turns the normals to the rays.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+fn place_block(hits: &mut Hits) {
+    for i in 0..WIDTH {
+        let [a, b, c] = [0, 1, 2].map(|k| get(&hits.form[k], i));
+        let form = Form { a, b, c, round: hits.round[i] != 0 };
+        let direction = get(&hits.direction, i);
+        let (p, n) = form.place(get(&hits.origin, i), direction, hits.place[0][i], hits.place[1][i], hits.place[2][i]);
+        let behind = n.dot(direction) > 0.0;
+        set(&mut hits.p, i, p);
+        set(&mut hits.outward, i, n);
+        set(&mut hits.facing, i, if behind { -n } else { n });
+        hits.behind[i] = i32::from(behind);
+    }
+}
+
+/// Fills `points` with what the rays of `hits` have met, turned to the rays as testrender turns it.
+pub fn fill<'h>(
+    points: &mut Points,
+    geometry: &Geometry,
+    mut hits: impl Iterator<Item = &'h RayHitPoint>,
+    needs: &Needs,
+) {
+    let mut block = Hits::new();
+    let more = needs.uv || needs.tangents || needs.any_derivative() || !geometry.normals.is_empty();
+    for start in (0..points.len).step_by(WIDTH) {
+        let len = WIDTH.min(points.len - start);
+        let mut met: [Option<&RayHitPoint>; WIDTH] = [None; WIDTH];
+        for (k, hit) in hits.by_ref().take(len).enumerate() {
+            let primitive = &geometry.primitives[hit.primitive as usize];
+            block.load(k, hit, &primitive.shape);
+            points.ray_type[start + k] = hit.ray_type;
+            points.surface_area[start + k] = geometry.objects[primitive.object as usize].surface_area;
+            met[k] = Some(hit);
         }
-        Shape::Triangle { a, b, c } => {
-            ((1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c, (b - a).cross(c - a).normalize())
+        place_block(&mut block);
+        store(&mut points.i, start, len, &block.direction);
+        store(&mut points.p, start, len, &block.p);
+        store(&mut points.n, start, len, &block.facing);
+        store(&mut points.ng, start, len, &block.facing);
+        points.backfacing[start..start + len].copy_from_slice(&block.behind[..len]);
+        if more {
+            for (k, hit) in met.iter().flatten().enumerate() {
+                follow(points, start + k, geometry, hit, needs, get(&block.outward, k));
+            }
         }
     }
 }
 
-/// Fills one lane of `points`; gives position and geometric normal, turned to the ray as testrender turns it.
-#[inline]
-pub fn fill(points: &mut Points, lane: usize, geometry: &Geometry, hit: &RayHitPoint, needs: &Needs) -> (Vec3, Vec3) {
+/// Smooth normals, texture coordinates, tangents and derivatives of one lane, as far as they are read.
+fn follow(points: &mut Points, lane: usize, geometry: &Geometry, hit: &RayHitPoint, needs: &Needs, outward: Vec3) {
     let primitive = &geometry.primitives[hit.primitive as usize];
-    let (p, outward) = place(geometry, hit);
-    let backfacing = outward.dot(hit.direction) > 0.0;
-    let smooth = match primitive.normals {
-        Primitive::NONE => outward,
-        index => {
-            let [na, nb, nc] = geometry.normals[index as usize];
-            ((1.0 - hit.u - hit.v) * na + hit.u * nb + hit.v * nc).normalize_or(outward)
-        }
-    };
-    let sign = if backfacing { -1.0 } else { 1.0 };
-    let (n, ng) = (smooth * sign, outward * sign);
-    points.p.set(lane, p);
-    points.i.set(lane, hit.direction);
-    points.n.set(lane, n);
-    points.ng.set(lane, ng);
-    points.backfacing[lane] = i32::from(backfacing);
-    points.ray_type[lane] = hit.ray_type;
-    points.surface_area[lane] = geometry.objects[primitive.object as usize].surface_area;
+    if let Some([na, nb, nc]) = geometry.normals.get(primitive.normals as usize) {
+        let smooth = ((1.0 - hit.u - hit.v) * *na + hit.u * *nb + hit.v * *nc).normalize_or(outward);
+        points.n.set(lane, if points.backfacing[lane] != 0 { -smooth } else { smooth });
+    }
     if needs.uv {
         let uv = texture_coordinates(geometry, primitive, hit, outward);
         points.u[lane] = uv.x;
@@ -79,9 +205,8 @@ pub fn fill(points: &mut Points, lane: usize, geometry: &Geometry, hit: &RayHitP
         points.dpdv.set(lane, dpdv);
     }
     if needs.any_derivative() {
-        footprint(points, lane, hit, n);
+        footprint(points, lane, hit, points.n.get(lane));
     }
-    (p, ng)
 }
 
 fn texture_coordinates(geometry: &Geometry, primitive: &Primitive, hit: &RayHitPoint, n: Vec3) -> Vec2 {

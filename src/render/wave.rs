@@ -5,14 +5,17 @@
 //! adds to its own radiance, in the order of its own bounces, so the sums do not depend on how paths were batched.
 
 use super::accel::NOTHING;
+use super::camera::directions;
 use super::film::HALVES;
-use super::light::power_heuristic;
+use super::lanes::Lanes;
+use super::light::{LightLanes, power_heuristic};
 use super::random;
 use super::settings::LightStrategy;
 use super::shading::{Shading, ray_type};
 use super::shadow::ShadowQueue;
 use super::surface::RayHitPoint;
 use super::world::{Sky, World, fill_sky};
+use crate::math::columns::Column3;
 use glam::Vec3;
 
 /// One path: its ray, what it carries, what it has gathered, and its last hit.
@@ -37,6 +40,34 @@ pub struct Path {
     pub seed: u32,
     /// The sample's number.
     pub index: u32,
+}
+
+impl Path {
+    /// A path that leaves the camera.
+    #[inline]
+    fn new(world: &World, direction: Vec3, seed: u32, index: u32) -> Self {
+        Path {
+            hit: RayHitPoint {
+                origin: world.camera.eye(),
+                direction,
+                t: f32::INFINITY,
+                primitive: NOTHING,
+                u: 0.0,
+                v: 0.0,
+                radius: 0.0,
+                spread: if world.plan.cones { world.camera.spread(direction) } else { 0.0 },
+                ray_type: ray_type::CAMERA,
+            },
+            from: NOTHING,
+            throughput: Vec3::ONE,
+            pdf_solid_angle: f32::INFINITY,
+            radiance: Vec3::ZERO,
+            alpha: 0.0,
+            clear: true,
+            seed,
+            index,
+        }
+    }
 }
 
 /// Contributions that were not finite and therefore dropped.
@@ -83,8 +114,12 @@ pub struct Wave {
     pub sky_shadows: ShadowQueue,
     /// Shaders and lobes.
     pub shading: Shading,
-    /// One number a lane, between two steps of a batch.
-    pub densities: [f32; crate::exec::MAX_LANES],
+    /// The paths of the batch in work.
+    pub lanes: Lanes,
+    /// Samples of lights.
+    pub lit: LightLanes,
+    /// What a unit of their radiance adds.
+    pub weights: Column3,
     /// What had to be dropped.
     pub dropped: Dropped,
     /// Rays traced, of all kinds.
@@ -105,50 +140,36 @@ impl Wave {
             shadows: ShadowQueue::default(),
             sky_shadows: ShadowQueue::default(),
             shading: Shading::new(world.settings.closure, world.host.clone()),
-            densities: [0.0; crate::exec::MAX_LANES],
+            lanes: Lanes::default(),
+            lit: LightLanes::default(),
+            weights: Column3::default(),
             dropped: Dropped::default(),
             rays: 0,
         }
     }
 
-    /// Starts `samples` of each pixel of a row of pixels; call `clear` first.
+    /// Starts `samples` of a pixel; call `clear` first.
     pub fn start(&mut self, world: &World, x: u32, y: u32, samples: std::ops::Range<u32>) {
         let settings = world.settings;
         let halves = settings.halves() as u32;
         let seeds: [u32; HALVES] = std::array::from_fn(|half| random::pixel_seed(settings.seed, x, y, half as u32));
-        for sample in samples {
-            let (seed, index) = (seeds[(sample % halves) as usize], sample / halves);
-            let place = match settings.jitter {
-                true => {
-                    let r = random::sample(seed, index, random::CAMERA);
-                    [r[0], r[1]]
-                }
-                false => [0.5; 2],
-            };
-            self.places.push(place);
-            let direction = world.camera.direction(x as f32 + place[0], y as f32 + place[1]);
+        let lanes = &mut self.lanes;
+        lanes.resize(samples.len());
+        for (lane, sample) in samples.enumerate() {
+            lanes.seeds[lane] = seeds[(sample % halves) as usize];
+            lanes.indices[lane] = sample / halves;
+        }
+        match settings.jitter {
+            true => lanes.draw(random::CAMERA, 2),
+            false => lanes.numbers.iter_mut().for_each(|column| column.fill(0.5)),
+        }
+        let places = [lanes.numbers[0].as_slice(), lanes.numbers[1].as_slice()];
+        directions(&world.camera, x as f32, y as f32, places, &mut lanes.throughput);
+        for lane in 0..lanes.seeds.len() {
+            self.places.push([places[0][lane], places[1][lane]]);
             self.active.push(self.paths.len() as u32);
-            self.paths.push(Path {
-                hit: RayHitPoint {
-                    origin: world.camera.eye(),
-                    direction,
-                    t: f32::INFINITY,
-                    primitive: NOTHING,
-                    u: 0.0,
-                    v: 0.0,
-                    radius: 0.0,
-                    spread: if world.plan.cones { world.camera.spread(direction) } else { 0.0 },
-                    ray_type: ray_type::CAMERA,
-                },
-                from: NOTHING,
-                throughput: Vec3::ONE,
-                pdf_solid_angle: f32::INFINITY,
-                radiance: Vec3::ZERO,
-                alpha: 0.0,
-                clear: true,
-                seed,
-                index,
-            });
+            let direction = lanes.throughput.get(lane);
+            self.paths.push(Path::new(world, direction, lanes.seeds[lane], lanes.indices[lane]));
         }
     }
 

@@ -107,7 +107,7 @@ fn first_primitives(scene: &Scene) -> Vec<u32> {
 }
 
 /// A hit at surface coordinates `x`, `y` in [0, 1), from straight above.
-fn probe(scene: &Scene, primitive: u32, x: f32, y: f32) -> RayHitPoint {
+pub fn probe(scene: &Scene, primitive: u32, x: f32, y: f32) -> RayHitPoint {
     let mut hit = RayHitPoint {
         origin: Vec3::ZERO,
         direction: Vec3::NEG_Y,
@@ -143,7 +143,8 @@ fn constant_emission(scene: &Scene, plan: &Plan, shading: &mut Shading, object: 
         return None;
     }
     shading.resize(1);
-    fill(&mut shading.points, 0, &scene.geometry, &probe(scene, first, 0.5, 0.5), &plan.materials[material].needs);
+    let hit = probe(scene, first, 0.5, 0.5);
+    fill(&mut shading.points, &scene.geometry, std::iter::once(&hit), &plan.materials[material].needs);
     shading.shade(group);
     // What is not finite is left to the paths that meet it, which drop and report it.
     Some(shading.emission().get(0)).filter(|r| r.is_finite())
@@ -175,11 +176,9 @@ fn light_powers(scene: &Scene, plan: &Plan, shading: &mut Shading, constant: &[O
 fn mean_emission(scene: &Scene, plan: &Plan, shading: &mut Shading, primitive: u32, material: usize) -> f32 {
     const SIDE: usize = 4;
     shading.resize(SIDE * SIDE);
-    for lane in 0..SIDE * SIDE {
-        let at = |i: usize| (i as f32 + 0.5) / SIDE as f32;
-        let hit = probe(scene, primitive, at(lane % SIDE), at(lane / SIDE));
-        fill(&mut shading.points, lane, &scene.geometry, &hit, &plan.materials[material].needs);
-    }
+    let at = |i: usize| (i as f32 + 0.5) / SIDE as f32;
+    let hits: [RayHitPoint; SIDE * SIDE] = std::array::from_fn(|i| probe(scene, primitive, at(i % SIDE), at(i / SIDE)));
+    fill(&mut shading.points, &scene.geometry, hits.iter(), &plan.materials[material].needs);
     shading.shade(&scene.materials[material].surface);
     let emission = shading.emission();
     let sum: f32 = (0..SIDE * SIDE).map(|lane| emission.get(lane).element_sum()).filter(|e| e.is_finite()).sum();

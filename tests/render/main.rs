@@ -1,5 +1,6 @@
 //! The renderer against answers known exactly, against itself, and against bad input.
 
+mod adaptive;
 mod cloth;
 mod determinism;
 mod exact;

@@ -1,0 +1,90 @@
+//! Renders that stop by themselves: at a noise that is what they say it is, or at a time.
+
+use super::materials::picture;
+use super::speed::FIGURE1;
+use velour::render::{Image, Settings};
+
+const SIZE: (u32, u32) = (80, 32);
+
+fn figure(change: impl FnOnce(&mut Settings)) -> Image {
+    picture(FIGURE1, |s| {
+        (s.width, s.height) = SIZE;
+        change(s);
+    })
+}
+
+/// Mean square of the differences of two pictures.
+fn square_difference(a: &Image, b: &Image) -> f64 {
+    let sum: f64 = a.pixels.iter().zip(&b.pixels).map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    sum / a.pixels.len() as f64
+}
+
+/// A picture of `samples` that estimates its own error; no tile ever gets below the noise.
+fn estimated(samples: u32, seed: u32) -> Image {
+    figure(|s| (s.samples, s.noise, s.seed) = (samples, Some(1e-9), seed))
+}
+
+#[test]
+fn the_error_is_what_it_is_said_to_be() {
+    let truth = figure(|s| (s.samples, s.seed) = (2048, 77));
+    let mut ratio = [0.0; 2];
+    for seed in 0..4 {
+        let image = estimated(32, seed);
+        assert_eq!(image.about.taken, [32, 32]);
+        let said = image.about.noise.unwrap().powi(2);
+        ratio[0] += said / square_difference(&image, &truth) / 4.0;
+        // The control: the estimate of half as many samples must not pass for that of these.
+        ratio[1] += estimated(16, seed).about.noise.unwrap().powi(2) / square_difference(&image, &truth) / 4.0;
+    }
+    assert!((0.8..1.25).contains(&ratio[0]), "said / true = {}", ratio[0]);
+    assert!(!(0.8..1.25).contains(&ratio[1]), "control: {}", ratio[1]);
+}
+
+#[test]
+fn a_noise_is_reached_with_no_more_samples_than_a_tile_needs() {
+    let image = figure(|s| (s.samples, s.noise) = (4096, Some(0.006)));
+    let [fewest, most] = image.about.taken;
+    assert_eq!(fewest, 16, "the sky needs no more than the first round");
+    assert!(most > 16 && most < 4096, "{most}");
+    assert!(image.about.noise.unwrap() <= 0.006);
+    let tighter = figure(|s| (s.samples, s.noise) = (4096, Some(0.003)));
+    assert!(tighter.about.taken[1] > most && tighter.about.noise.unwrap() <= 0.003);
+    assert!(tighter.about.paths > image.about.paths);
+}
+
+#[test]
+fn a_noise_that_cannot_be_reached_stops_at_the_most_samples() {
+    let image = estimated(24, 0);
+    assert_eq!(image.about.taken, [24, 24]);
+    assert!(image.about.noise.unwrap() > 1e-9);
+}
+
+#[test]
+fn threads_and_waves_do_not_show_in_a_render_that_stops_by_noise() {
+    let with = |threads, wave_size| {
+        figure(|s| (s.samples, s.noise, s.threads, s.wave_size) = (256, Some(0.006), threads, wave_size)).pixels
+    };
+    assert!(with(1, 4096) == with(2, 100));
+}
+
+#[test]
+fn a_render_stops_at_its_time_and_has_a_picture() {
+    let start = std::time::Instant::now();
+    let image = figure(|s| (s.samples, s.seconds) = (1 << 20, Some(0.3)));
+    // Generous, for a machine with other things to do; without the limit this would take hours.
+    assert!(start.elapsed().as_secs_f64() < 30.0);
+    assert!(image.about.taken[0] >= 16 && image.about.noise.is_some());
+    assert!(image.pixels.iter().all(|p| p.is_finite()) && image.mean()[0] > 0.1);
+    let none = figure(|s| (s.samples, s.seconds) = (1 << 20, Some(1e-6)));
+    assert_eq!(none.about.taken, [16, 16], "the first round is always done");
+}
+
+#[test]
+fn nonsense_is_refused() {
+    for noise in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        assert!(Settings { noise: Some(noise), ..Settings::default() }.check().unwrap_err().contains("0.01"));
+    }
+    for seconds in [0.0, -1.0, f64::NAN] {
+        assert!(Settings { seconds: Some(seconds), ..Settings::default() }.check().is_err());
+    }
+}
