@@ -379,7 +379,30 @@ fn explain_tells_the_plan_and_shaders_may_print() {
     let (code, out, error) = place.say(&[&["render", "says.xml", "-o", "s.png", "--explain"], &SMALL[..]].concat());
     assert_eq!(code, 0);
     assert!(out.starts_with("lights: none, so no light sampling") && out.contains("ray cones: not carried"), "{out}");
+    assert!(out.contains("closures diffuse\n") && out.contains("globals N, u; derivatives of none"), "{out}");
+    let saved = out.split("not needed, and what it would cost:\n").nth(1).expect("a list of savings");
+    for what in ["u and v", "dPdu and dPdv", "derivatives", "sampling of lights", "closures", "layers"] {
+        let there = saved.lines().any(|line| line.trim_start().starts_with(what) || line.contains(what));
+        // What is read is no saving.
+        assert_eq!(there, what != "u and v", "{what}: {saved}");
+    }
     assert_eq!(error.lines().filter(|line| line.contains("look at me")).count(), 1, "{error}");
+}
+
+#[test]
+fn renders_stop_at_a_noise_or_a_time_and_say_what_they_reached() {
+    let place = Place::new();
+    place.file("s.xml", scene("radiance 1 1 1", "shader matte l1;"));
+    let render =
+        |more: &[&str]| place.say(&[&["render", "s.xml", "-o", "s.exr"], more, &["--res", "24", "24"]].concat());
+    let (code, _, error) = render(&["--noise", "0.01"]);
+    assert!(code == 0 && error.contains("error ") && error.contains("samples a pixel"), "{error}");
+    let (code, _, error) = render(&["--time", "0.05"]);
+    assert!(code == 0 && error.contains("error "), "{error}");
+    let (code, _, error) = render(&["--noise", "0"]);
+    assert!(code == 2 && error.contains("above 0"), "{error}");
+    let (code, _, error) = render(&["--time=-1"]);
+    assert!(code == 2 && error.contains("seconds above 0"), "{error}");
 }
 
 #[test]

@@ -88,12 +88,23 @@ impl Block {
     /// The formulas are those of `accel::sphere`.
     #[inline(always)]
     fn sphere(&mut self, center: Vec3, r: f32, id: u32) {
+        let (mut along, mut left) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let mut any = 0;
         for k in 0..WIDTH {
             let (x, y, z) = (self.ox[k] - center.x, self.oy[k] - center.y, self.oz[k] - center.z);
             let (dx, dy, dz) = (self.dx[k], self.dy[k], self.dz[k]);
             let b = x * dx + y * dy + z * dz;
             let (fx, fy, fz) = (x - b * dx, y - b * dy, z - b * dz);
             let h = r * r - (fx * fx + fy * fy + fz * fz);
+            any |= i32::from(h >= 0.0) | i32::from(self.skip[k] == id);
+            (along[k], left[k]) = (b, h);
+        }
+        // Rays of one pixel mostly miss a sphere together.
+        if any == 0 {
+            return;
+        }
+        for k in 0..WIDTH {
+            let (b, h) = (along[k], left[k]);
             let root = h.max(0.0).sqrt();
             let (near, far) = (-b - root, root - b);
             let apart = if near > 0.0 { near } else { far };

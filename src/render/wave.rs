@@ -106,6 +106,7 @@ pub struct Wave {
     /// Those that go on to the next bounce.
     pub next: Vec<u32>,
     missed: Vec<u32>,
+    materials: Vec<u32>,
     sorted: Vec<u32>,
     starts: Vec<u32>,
     /// Shadow rays to lights.
@@ -135,6 +136,7 @@ impl Wave {
             active: Vec::new(),
             next: Vec::new(),
             missed: Vec::new(),
+            materials: Vec::new(),
             sorted: Vec::new(),
             starts: Vec::new(),
             shadows: ShadowQueue::default(),
@@ -252,6 +254,7 @@ impl Wave {
         self.starts.clear();
         self.starts.resize(world.scene.materials.len() + 1, 0);
         self.next.clear();
+        self.materials.clear();
         for &i in &self.active {
             let path = &mut self.paths[i as usize];
             if path.hit.primitive == NOTHING {
@@ -274,13 +277,14 @@ impl Wave {
             }
             self.starts[material + 1] += 1;
             self.next.push(i);
+            self.materials.push(material as u32);
         }
         for m in 1..self.starts.len() {
             self.starts[m] += self.starts[m - 1];
         }
         self.sorted.resize(self.next.len(), 0);
-        for &i in &self.next {
-            let slot = &mut self.starts[world.material_of(self.paths[i as usize].hit.primitive)];
+        for (&i, &material) in self.next.iter().zip(&self.materials) {
+            let slot = &mut self.starts[material as usize];
             self.sorted[*slot as usize] = i;
             *slot += 1;
         }
