@@ -285,8 +285,7 @@ impl Surfaces {
         let from = NormalColumns { given: Triples::of(&self.given), wo: Triples::of(wo), ng: Triples::of(ng) };
         let normals = &mut frame.normal;
         normal_lanes(from, &mut normals.x, &mut normals.y, &mut normals.z, &mut frame.inside, &mut frame.broken);
-        frame.any_inside = frame.inside.iter().sum::<f32>() > 0.0;
-        frame.any_broken = frame.broken.iter().sum::<f32>() > 0.0;
+        (frame.any_inside, frame.any_broken) = (any(&frame.inside), any(&frame.broken));
         let (t, b) = (&mut frame.tangent, &mut frame.bitangent);
         tangent_lanes(Triples::of(&frame.normal), &mut t.x, &mut t.y, &mut t.z, &mut b.x, &mut b.y, &mut b.z);
         if let Some(u) = tangent {
@@ -301,6 +300,11 @@ impl Surfaces {
         localise_lanes(axes, Triples::of(wo), &mut frame.wo.x, &mut frame.wo.y, &mut frame.wo.z);
         index as u32
     }
+}
+
+/// Is any number not +0? Words need no order, as a sum of floats would.
+fn any(values: &[f32]) -> bool {
+    values.iter().fold(0, |bits, value| bits | value.to_bits()) != 0
 }
 
 /// Writes a column of the tree as one number a lane.

@@ -8,7 +8,10 @@
 //! range of sqrt(eta² - 1), which takes some sixty hats; and instead of a table for each Fresnel term, which a textured
 //! index would need by the lane. Axes: cubic interpolation in log alpha + 6 alpha and in log(1 + cos / (0.04 alpha)), whose
 //! range is scaled to the width, because masking depends on cos / alpha near the horizon and on alpha itself elsewhere.
-//! An albedo takes about 95 ns, three times what evaluating the lobe and its base takes: a lane without a layer pays nothing.
+//! Decision (2026-11-22): cells are blended over the width first and over the cosine then, because a material of one width needs
+//! the first once a batch ([`Row`]), and the bits are the same whether it does so or not; instead of a curve over the cosine for each
+//! material, which a textured width or index would need by the lane. Nodes fill whole vectors, so that one lane's are computed
+//! side by side. AN_ALBEDO_FIGURES
 
 use super::Geometry;
 use super::distribution::{Distribution, Widths};
@@ -32,10 +35,72 @@ const LINEAR: f32 = 6.0;
 const BEND: f32 = 0.04;
 const LEAST: f32 = super::MIN_ALPHA;
 
+/// Nodes filled up with empty ones to a whole vector.
+const WIDE: usize = 8;
+
 /// Weights, times the distance of their nodes from the viewer's cosine, and the weights alone.
 ///
 /// Nodes are interpolated as centers of gravity, because those of almost no weight lie far away in one cell and not in the next.
-type Cell = [f32; 2 * NODES];
+type Cell = [f32; 2 * WIDE];
+
+/// The cells of one width for all cosines.
+pub struct Row {
+    alpha: f32,
+    cells: [Cell; COSINES],
+}
+
+/// Four cells, weighted.
+#[inline(always)]
+fn blend(cells: [&Cell; 4], weights: [f32; 4]) -> Cell {
+    let mut sum = [0.0; 2 * WIDE];
+    for k in 0..2 * WIDE {
+        let (near, far) =
+            (weights[0] * cells[0][k] + weights[1] * cells[1][k], weights[2] * cells[2][k] + weights[3] * cells[3][k]);
+        sum[k] = near + far;
+    }
+    sum
+}
+
+/// The sum of a whole vector, by halves.
+#[inline(always)]
+fn sum(v: [f32; WIDE]) -> f32 {
+    ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
+}
+
+/// The integral of a Fresnel term by the rule of a cell.
+#[inline(always)]
+fn integral<F: Fresnel>(fresnel: &F, cell: &Cell, cos: f32) -> Vec3 {
+    // Plain loops over arrays, so that the Fresnel terms of one cell are computed side by side.
+    let (mut at, mut weight) = ([0.0; WIDE], [0.0; WIDE]);
+    for k in 0..WIDE {
+        weight[k] = cell[WIDE + k];
+        let away = select(weight[k] > 1e-9, cell[k] / weight[k].max(1e-9), 0.0);
+        at[k] = limited(cos + away, 0.0, 1.0);
+    }
+    let (mut x, mut y, mut z) = ([0.0; WIDE], [0.0; WIDE], [0.0; WIDE]);
+    if F::COLORED {
+        for k in 0..WIDE {
+            let color = fresnel.color(at[k]);
+            (x[k], y[k], z[k]) = (color.x * weight[k], color.y * weight[k], color.z * weight[k]);
+        }
+        return Vec3::new(sum(x), sum(y), sum(z)).clamp(Vec3::ZERO, Vec3::ONE);
+    }
+    for k in 0..WIDE {
+        x[k] = fresnel.largest(at[k]) * weight[k];
+    }
+    Vec3::splat(sum(x)).clamp(Vec3::ZERO, Vec3::ONE)
+}
+
+impl Row {
+    /// [`FacetTable::color`] of the row's width, with the same bits.
+    #[inline(always)]
+    pub fn color<F: Fresnel>(&self, fresnel: &F, cos: f32) -> Vec3 {
+        let (column, by_column) = cubic(cosine_axis(cos, self.alpha), COSINES);
+        let [a, b, c, d] = column;
+        let cell = blend([&self.cells[a], &self.cells[b], &self.cells[c], &self.cells[d]], by_column);
+        integral(fresnel, &cell, cos)
+    }
+}
 
 /// The albedo of the reflecting half of one distribution with one shadowing term.
 #[derive(Debug)]
@@ -73,10 +138,10 @@ impl FacetTable {
                 points.clear();
                 facets(&distribution, geometry, [alpha, cos], [&along, &across], &mut points);
                 let rule = gauss_rule(&points);
-                let mut cell = [0.0; 2 * NODES];
+                let mut cell = [0.0; 2 * WIDE];
                 for k in 0..NODES {
                     cell[k] = (rule[k].weight * (rule[k].x - f64::from(cos))) as f32;
-                    cell[NODES + k] = rule[k].weight as f32;
+                    cell[WIDE + k] = rule[k].weight as f32;
                 }
                 cells.push(cell);
             }
@@ -90,35 +155,33 @@ impl FacetTable {
     #[inline(always)]
     pub fn color<F: Fresnel>(&self, fresnel: &F, alpha: f32, cos: f32) -> Vec3 {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
-        let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
-        let mut sum = [0.0; 2 * NODES];
-        for (i, wi) in row.into_iter().zip(by_row) {
-            for (j, wj) in column.into_iter().zip(by_column) {
-                let (cell, weight) = (&self.cells[i * COSINES + j], wi * wj);
-                for (s, value) in sum.iter_mut().zip(cell) {
-                    *s += weight * value;
-                }
-            }
+        let ([a, b, c, d], by_column) = cubic(cosine_axis(cos, alpha), COSINES);
+        let columns = [
+            self.over_widths(row, by_row, a),
+            self.over_widths(row, by_row, b),
+            self.over_widths(row, by_row, c),
+            self.over_widths(row, by_row, d),
+        ];
+        let cell = blend([&columns[0], &columns[1], &columns[2], &columns[3]], by_column);
+        integral(fresnel, &cell, cos)
+    }
+
+    /// The cells of one width, 1e-3..1.
+    #[inline(always)]
+    pub fn row(&self, alpha: f32) -> Row {
+        let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
+        let mut cells = [[0.0; 2 * WIDE]; COSINES];
+        for (j, cell) in cells.iter_mut().enumerate() {
+            *cell = self.over_widths(row, by_row, j);
         }
-        // Plain loops over arrays, so that the Fresnel terms of one cell are computed side by side.
-        let (mut at, mut color) = ([0.0; NODES], Vec3::ZERO);
-        for k in 0..NODES {
-            let weight = sum[NODES + k];
-            let away = select(weight > 1e-9, sum[k] / weight, 0.0);
-            at[k] = limited(cos + away, 0.0, 1.0);
-        }
-        if F::COLORED {
-            for k in 0..NODES {
-                color += fresnel.color(at[k]) * sum[NODES + k];
-            }
-        } else {
-            let mut reflected = [0.0; NODES];
-            for k in 0..NODES {
-                reflected[k] = fresnel.largest(at[k]) * sum[NODES + k];
-            }
-            color = Vec3::splat(reflected.iter().sum());
-        }
-        color.clamp(Vec3::ZERO, Vec3::ONE)
+        Row { alpha, cells }
+    }
+
+    /// The cell of one cosine between four widths.
+    #[inline(always)]
+    fn over_widths(&self, row: [usize; 4], by_row: [f32; 4], j: usize) -> Cell {
+        let at = |i: usize| &self.cells[i * COSINES + j];
+        blend([at(row[0]), at(row[1]), at(row[2]), at(row[3])], by_row)
     }
 }
 
