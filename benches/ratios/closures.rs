@@ -1,7 +1,7 @@
 //! Evaluation and sampling of single lobes, and of sheen over diffuse.
 
 use super::Table;
-use super::hand::{self, Batch, Columns, N, at, columns, cut, directions, numbers, views};
+use super::hand::{self, Batch, Columns, N, World, at, columns, cut, directions, numbers, views};
 use glam::Vec3;
 use multiversion::multiversion;
 use velour::bsdf::fresnel::Dielectric;
@@ -20,16 +20,20 @@ fn lobe<M: Scatter>(table: &Table, name: &str, closure: &str, model: M) {
     }
     let mut batch = Batch::new(&format!("surface s() {{ Ci = {closure}; }}"));
     let (wo, wi, xi) = (batch.wo.clone(), directions(2), numbers(3));
-    let view = views(model, &wo);
-    let (mut f_cos, mut pdf) = (vec![0.0; N], vec![0.0; N]);
-    hand::evaluate(model, &view, columns(&wo), columns(&wi), &mut f_cos, &mut pdf);
-    let error = batch.differs(&wi, &f_cos, &pdf);
+    let world = World::new(model, &wo);
+    let (mut color, mut pdf) = (Column3::zeros(N), vec![0.0; N]);
+    let by_hand = |color: &mut Column3, pdf: &mut [f32]| {
+        let to = [&mut color.x[..], &mut color.y[..], &mut color.z[..]];
+        hand::evaluate(model, std::hint::black_box(&world), columns(&wi), to, pdf);
+    };
+    by_hand(&mut color, &mut pdf);
+    let error = batch.differs(&wi, &color.x, &pdf);
     assert!(error < 1e-3, "the limit of {name} is another function: {error}");
     let mut out = Evaluation::default();
     table.time(
         &evaluation,
         (&mut || batch.lobes.evaluate(std::hint::black_box(&wi), &mut out), N),
-        (&mut || hand::evaluate(model, &view, columns(&wo), columns(&wi), &mut f_cos, &mut pdf), N),
+        (&mut || by_hand(&mut color, &mut pdf), N),
         "<= 1.5",
     );
     let (mut samples, mut to, mut weight) = (Samples::default(), Column3::zeros(N), vec![0.0; N]);
@@ -40,7 +44,7 @@ fn lobe<M: Scatter>(table: &Table, name: &str, closure: &str, model: M) {
         (
             &mut || {
                 let to = [&mut to.x[..], &mut to.y[..], &mut to.z[..]];
-                hand::sample(model, frame, &view, columns(&wo), columns(&xi), to, &mut weight, &mut pdf);
+                hand::sample(model, frame, &world.view, columns(&wo), columns(&xi), to, &mut weight, &mut pdf);
             },
             N,
         ),

@@ -124,24 +124,53 @@ pub fn views<M: Scatter>(model: M, wo: &Column3) -> [Vec<f32>; 5] {
     std::array::from_fn(|k| (0..N).map(|lane| model.view(wo.get(lane))[k]).collect())
 }
 
-/// One lobe of weight 1 as one loop: f cos and density.
+/// What a loop over lanes reads: everything that differs between points, as a renderer has it.
+pub struct World {
+    /// Viewers in the world, and in the frames.
+    pub wo: [Column3; 2],
+    /// Tangents, bitangents, shading normals and geometric normals.
+    pub axes: [Column3; 4],
+    /// What the model derives from the viewers.
+    pub view: [Vec<f32>; 5],
+    /// Weights of the lobe.
+    pub weight: Column3,
+}
+
+impl World {
+    /// Lobes of weight 1 on a plane.
+    pub fn new<M: Scatter>(model: M, wo: &Column3) -> Self {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::Z].map(|axis| Column3::splat(axis, N));
+        World { wo: [wo.clone(), wo.clone()], axes, view: views(model, wo), weight: Column3::splat(Vec3::ONE, N) }
+    }
+}
+
+/// One lobe as one loop, from world directions to color times cosine and density. Light that crosses the geometric surface is
+/// cut off.
 #[multiversion(targets("x86_64+avx2"))]
-pub fn evaluate<M: Scatter>(
-    model: M,
-    view: &[Vec<f32>; 5],
-    wo: Columns<'_>,
-    wi: Columns<'_>,
-    f_cos: &mut [f32],
-    pdf: &mut [f32],
-) {
-    let n = f_cos.len();
-    let (wo, wi, pdf) = (cut(wo, n), cut(wi, n), &mut pdf[..n]);
-    let (a, b, c, d, e) = (&view[0][..n], &view[1][..n], &view[2][..n], &view[3][..n], &view[4][..n]);
+pub fn evaluate<M: Scatter>(model: M, world: &World, wi: Columns<'_>, out: [&mut [f32]; 3], pdf: &mut [f32]) {
+    let n = pdf.len();
+    let [x, y, z] = out;
+    let (x, y, z, wi) = (&mut x[..n], &mut y[..n], &mut z[..n], cut(wi, n));
+    let [outside, wo, weight] = [of(&world.wo[0], n), of(&world.wo[1], n), of(&world.weight, n)];
+    let [t, b, s, g] = [of(&world.axes[0], n), of(&world.axes[1], n), of(&world.axes[2], n), of(&world.axes[3], n)];
+    let v = &world.view;
+    let v = [&v[0][..n], &v[1][..n], &v[2][..n], &v[3][..n], &v[4][..n]];
     for i in 0..n {
-        let value = model.eval_from(at(wo, i), [a[i], b[i], c[i], d[i], e[i]], at(wi, i));
-        f_cos[i] = value.f_cos;
+        let w = at(wi, i);
+        let local = Vec3::new(w.dot(at(t, i)), w.dot(at(b, i)), w.dot(at(s, i)));
+        let ng = at(g, i);
+        let visible = ng.dot(w) * 1f32.copysign(ng.dot(at(outside, i))) > 0.0;
+        let value = model.eval_from(at(wo, i), [v[0][i], v[1][i], v[2][i], v[3][i], v[4][i]], local);
+        let f_cos = if visible { value.f_cos } else { 0.0 };
+        (x[i], y[i], z[i]) = (weight[0][i] * f_cos, weight[1][i] * f_cos, weight[2][i] * f_cos);
         pdf[i] = value.pdf;
     }
+}
+
+/// Borrows columns of a length.
+#[inline(always)]
+fn of(w: &Column3, n: usize) -> Columns<'_> {
+    [&w.x[..n], &w.y[..n], &w.z[..n]]
 }
 
 /// One lobe of weight 1 as one loop: a direction in the world, its density and its weight.

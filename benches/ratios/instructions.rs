@@ -19,6 +19,9 @@ const ROUNDS: &str = "shader rounds(output float result = 0) {
         x = i * h + 0.1 * g; y = x * 0.5 + v; }
     result = x; }";
 
+/// Lanes that are computed together.
+const BLOCK: usize = 16;
+
 /// The elementary functions of this library, or (`LIBM`) of the standard one, which cannot become SIMD.
 #[inline(always)]
 fn exp<const LIBM: bool>(x: f32) -> f32 {
@@ -30,57 +33,75 @@ fn floor<const LIBM: bool>(x: f32) -> f32 {
     if LIBM { x.floor() } else { e::floor(x) }
 }
 
+/// One round of either chain: `i`, `h` and `g`.
 #[inline(always)]
-fn ten<const LIBM: bool>(u: f32, _v: f32) -> f32 {
-    const K: f32 = 0.3;
-    let a = u + K;
-    let b = a * u;
-    let c = b - K;
+fn round<const LIBM: bool>(a: f32, b: f32, c: f32) -> (f32, f32, f32) {
     let f = sqrt(min(div(a, c), c));
     let g = f * a + b;
-    exp::<LIBM>(-f) * floor::<LIBM>(g) + g
+    (exp::<LIBM>(-f), floor::<LIBM>(g), g)
 }
 
+/// The first chain over lanes or points that are kept apart.
 #[inline(always)]
-fn rounds<const LIBM: bool>(u: f32, v: f32) -> f32 {
-    let (mut x, mut y) = (u, v);
-    for _ in 0..10 {
+fn ten<const LIBM: bool>(u: &[f32; BLOCK], _v: &[f32; BLOCK], out: &mut [f32; BLOCK]) {
+    for l in 0..BLOCK {
+        // What passes a black box is a point of its own, which no compiler can join with its neighbours.
+        let u = if LIBM { black_box(u[l]) } else { u[l] };
+        let a = u + 0.3;
+        let b = a * u;
+        let (i, h, g) = round::<LIBM>(a, b, b - 0.3);
+        out[l] = i * h + g;
+    }
+}
+
+/// The second chain.
+#[inline(always)]
+fn rounds<const LIBM: bool>(u: &[f32; BLOCK], v: &[f32; BLOCK], out: &mut [f32; BLOCK]) {
+    let step = |x: f32, y: f32, v: f32| {
         let a = x + y;
         let b = a * x;
-        let c = b - y;
-        let f = sqrt(min(div(a, c), c));
-        let g = f * a + b;
-        x = exp::<LIBM>(-f) * floor::<LIBM>(g) + 0.1 * g;
-        y = x * 0.5 + v;
+        let (i, h, g) = round::<LIBM>(a, b, b - y);
+        let x = i * h + 0.1 * g;
+        (x, x * 0.5 + v)
+    };
+    if LIBM {
+        for l in 0..BLOCK {
+            let (u, v) = black_box((u[l], v[l]));
+            let (mut x, mut y) = (u, v);
+            for _ in 0..10 {
+                (x, y) = step(x, y, v);
+            }
+            out[l] = x;
+        }
+        return;
     }
-    x
+    let (mut x, mut y) = (*u, *v);
+    for _ in 0..10 {
+        for l in 0..BLOCK {
+            (x[l], y[l]) = step(x[l], y[l], v[l]);
+        }
+    }
+    *out = x;
 }
 
-/// Loops over lanes and over points.
+/// Loops over blocks of lanes and of points.
 macro_rules! loops {
-    ($($lanes:ident $points:ident $function:ident;)*) => {$(
+    ($($name:ident $function:ident $libm:literal;)*) => {$(
         #[multiversion(targets("x86_64+avx2"))]
-        fn $lanes(u: &[f32], v: &[f32], out: &mut [f32]) {
-            let (u, v) = (&u[..N], &v[..N]);
-            for (i, out) in out.iter_mut().enumerate() {
-                *out = $function::<false>(u[i], v[i]);
-            }
-        }
-        #[multiversion(targets("x86_64+avx2"))]
-        fn $points(u: &[f32], v: &[f32], out: &mut [f32]) {
-            let (u, v) = (&u[..N], &v[..N]);
-            for (i, out) in out.iter_mut().enumerate() {
-                // What passes a black box is a point of its own, which no compiler can join with its neighbours.
-                let (u, v) = black_box((u[i], v[i]));
-                *out = $function::<true>(u, v);
+        fn $name(u: &[f32], v: &[f32], out: &mut [f32]) {
+            let (u, v) = (u.as_chunks::<BLOCK>().0, v.as_chunks::<BLOCK>().0);
+            for ((u, v), out) in u.iter().zip(v).zip(out.as_chunks_mut::<BLOCK>().0) {
+                $function::<$libm>(u, v, out);
             }
         }
     )*};
 }
 
 loops! {
-    ten_lanes ten_points ten;
-    rounds_lanes rounds_points rounds;
+    ten_lanes ten false;
+    ten_points ten true;
+    rounds_lanes rounds false;
+    rounds_points rounds true;
 }
 
 type Loop = fn(&[f32], &[f32], &mut [f32]);

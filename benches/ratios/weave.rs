@@ -1,7 +1,7 @@
 //! The woven cloth of `shaders/weave.osl`: pattern alone, with closure tree and lobes, and with an evaluation.
 
 use super::Table;
-use super::hand::{Batch, Columns, N, at, columns, cut, directions};
+use super::hand::{Batch, Columns, N, columns, cut, directions};
 use glam::Vec3;
 use multiversion::multiversion;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -45,8 +45,7 @@ fn pattern<const LIBM: bool>(p: Vec3, u: f32, v: f32) -> (Vec3, f32) {
     let (s, t) = (u * 40.0, v * 40.0);
     let (row, column) = (floor::<LIBM>(s), floor::<LIBM>(t));
     let sum = row + column;
-    let half = sum * 0.5;
-    let above = sum - 2.0 * if LIBM { half.trunc() } else { e::trunc(half) } < 1.0;
+    let above = sum - 2.0 * floor::<LIBM>(sum * 0.5) < 1.0;
     let octave = |f: f32| perlin3::<0>(Endless, p.x * f, p.y * f, p.z * f).value;
     let uneven = octave(8.0) + 0.5 * octave(16.0) + 0.25 * octave(32.0);
     let angle = PI * if above { s - row } else { t - column };
@@ -135,12 +134,13 @@ fn point<const LIBM: bool, const STAGE: u8>(from: [Vec3; 4], [u, v]: [f32; 2], l
         return;
     }
     let Frame { tangent: t, bitangent: b, normal: n } = all.frame;
-    for (k, w) in [thread, t, b, n, all.wo].into_iter().enumerate() {
-        (out[3 * k][lane], out[3 * k + 1][lane], out[3 * k + 2][lane]) = (w.x, w.y, w.z);
-    }
-    for k in 0..5 {
-        out[15 + k][lane] = all.view[k];
-    }
+    (out[0][lane], out[1][lane], out[2][lane]) = (thread.x, thread.y, thread.z);
+    (out[3][lane], out[4][lane], out[5][lane]) = (t.x, t.y, t.z);
+    (out[6][lane], out[7][lane], out[8][lane]) = (b.x, b.y, b.z);
+    (out[9][lane], out[10][lane], out[11][lane]) = (n.x, n.y, n.z);
+    (out[12][lane], out[13][lane], out[14][lane]) = (all.wo.x, all.wo.y, all.wo.z);
+    (out[15][lane], out[16][lane], out[17][lane]) = (all.view[0], all.view[1], all.view[2]);
+    (out[18][lane], out[19][lane]) = (all.view[3], all.view[4]);
     (out[20][lane], out[21][lane]) = (roughness, all.alpha_o);
     (out[22][lane], out[23][lane]) = (all.picks[0], all.picks[1]);
 }
@@ -149,15 +149,27 @@ fn point<const LIBM: bool, const STAGE: u8>(from: [Vec3; 4], [u, v]: [f32; 2], l
 #[multiversion(targets("x86_64+avx2"))]
 fn run<const LIBM: bool, const STAGE: u8>(from: Points<'_>, out: &mut [Block]) {
     let [p, normal, wo, wi] = [cut(from.p, N), cut(from.normal, N), cut(from.wo, N), cut(from.wi, N)];
-    let (u, v) = (&from.uv[0][..N], &from.uv[1][..N]);
-    for (block, out) in out.iter_mut().enumerate() {
-        for lane in 0..BLOCK {
-            let i = BLOCK * block + lane;
-            let (mut triples, mut uv) = ([at(p, i), at(normal, i), at(wo, i), at(wi, i)], [u[i], v[i]]);
+    let uv = [&from.uv[0][..N], &from.uv[1][..N]];
+    for (block, out) in out[..N / BLOCK].iter_mut().enumerate() {
+        let first = BLOCK * block;
+        let mut x = [[0.0; BLOCK]; 14];
+        let inputs =
+            [p[0], p[1], p[2], normal[0], normal[1], normal[2], wo[0], wo[1], wo[2], wi[0], wi[1], wi[2], uv[0], uv[1]];
+        for (to, column) in x.iter_mut().zip(inputs) {
+            to.copy_from_slice(&column[first..first + BLOCK]);
+        }
+        for l in 0..BLOCK {
+            let mut triples = [
+                Vec3::new(x[0][l], x[1][l], x[2][l]),
+                Vec3::new(x[3][l], x[4][l], x[5][l]),
+                Vec3::new(x[6][l], x[7][l], x[8][l]),
+                Vec3::new(x[9][l], x[10][l], x[11][l]),
+            ];
+            let mut uv = [x[12][l], x[13][l]];
             if LIBM {
                 (triples, uv) = black_box((triples, uv));
             }
-            point::<LIBM, STAGE>(triples, uv, lane, out);
+            point::<LIBM, STAGE>(triples, uv, l, out);
         }
     }
 }
@@ -182,9 +194,6 @@ fn check(batch: &mut Batch, from: Points, wi: &velour::math::columns::Column3, o
 
 /// Prints the rows.
 pub fn rows(table: &Table) {
-    if !table.wants("weave") && !table.wants("weave, pattern, to lobes, evaluated") {
-        return;
-    }
     let (mut plain, mut batch) = (Batch::new(&without_closures()), Batch::new(SHADER));
     let (points, wo, wi) = (batch.points.clone(), batch.wo.clone(), directions(2));
     let from = Points {

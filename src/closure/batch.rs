@@ -460,3 +460,14 @@ pub fn pick_lanes(lobe: u32, pick: &[f32], left: &mut [f32], rest: &mut [f32], c
         left[i] = select(open && !mine, left[i].max(0.0), left[i]);
     }
 }
+
+/// Gives lanes that rounding left just behind the last part to the last lobe that can be picked.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn rest_lanes(none: u32, last: &[u32], rest: &mut [f32], chosen: &mut [u32]) {
+    let n = chosen.len();
+    let (last, rest) = (&last[..n], &mut rest[..n]);
+    for i in 0..n {
+        rest[i] = select(chosen[i] == none, 0.999_999_94, rest[i]);
+        chosen[i] = if chosen[i] == none { last[i] } else { chosen[i] };
+    }
+}

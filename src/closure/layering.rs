@@ -11,10 +11,12 @@ use super::kinds::with_source;
 use super::media::Media;
 use super::settings::Layering;
 use super::surfaces::{NONE, Surface, Surfaces};
+use super::weights::{Operand, multiply};
 use crate::bsdf::specular::{reflection, refraction};
 use crate::bsdf::{GAUSS, between};
 use crate::math::columns::Column3;
 use glam::Vec3;
+use multiversion::multiversion;
 use std::borrow::Cow;
 
 /// Which direction an albedo is asked for.
@@ -140,17 +142,11 @@ impl Layers {
                 (Top::Boundary, Some(medium)) => alpha.copy_from_slice(&medium.pass_o),
                 _ => {
                     top_albedo(&layer, surfaces, Side::View, &self.values, &mut self.scratch);
-                    let t = surfaces.column(layer.t);
-                    for i in 0..n {
-                        alpha[i] = (1.0 - t[i] * self.scratch[i]).clamp(0.0, 1.0);
-                    }
+                    alpha_lanes(surfaces.column(layer.t), &self.scratch, alpha);
                 }
             }
             let (before, here) = self.through.split_at_mut(index * n);
-            let parent = column_or(before, layer.parent, ones);
-            for i in 0..n {
-                here[i] = parent[i] * alpha[i];
-            }
+            multiply(Operand::Many(column_or(before, layer.parent, ones)), Operand::Many(alpha), &mut here[..n]);
         }
         if self.list.iter().any(|layer| layer.rule == Layering::Kelemen) {
             self.prepare_means(surfaces);
@@ -279,6 +275,16 @@ impl Layers {
                 }
             }
         }
+    }
+}
+
+/// What a top of coverage `t` lets through.
+#[multiversion(targets("x86_64+avx2"))]
+fn alpha_lanes(t: &[f32], top: &[f32], alpha: &mut [f32]) {
+    let n = alpha.len();
+    let (t, top) = (&t[..n], &top[..n]);
+    for i in 0..n {
+        alpha[i] = (1.0 - t[i] * top[i]).clamp(0.0, 1.0);
     }
 }
 

@@ -187,3 +187,32 @@ pub fn normalise_lanes(lobe: u32, inverse: &[f32], share: &mut [f32], last: &mut
         last[i] = if share[i] > 0.0 { lobe } else { last[i] };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_finite_weights_that_are_not_all_zero_pass() {
+        let with = |last: f32| finite_and_some(&[0.0, -0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, last]);
+        assert!(with(1e-45) && with(-3.0) && with(f32::MAX));
+        assert!(!with(0.0) && !with(-0.0) && !with(f32::NAN) && !with(f32::INFINITY) && !with(-f32::INFINITY));
+        assert!(!finite_and_some(&[1.0, f32::NAN]) && !finite_and_some(&[]));
+    }
+
+    #[test]
+    fn weights_combine_by_lane_and_component() {
+        let mut tree = Tree::default();
+        tree.clear(2);
+        let column = tree.varying(&[2.0, 3.0]);
+        let mut weights = Weights::default();
+        let one = Weight::Uniform([1.0, 10.0, 100.0]);
+        let scaled = weights.times(&tree, one, [column, Floats::Uniform(0.5), column]);
+        let sum = weights.plus(2, scaled, one);
+        let masked = weights.masked(2, sum, |lane| lane == 1);
+        let all = |w| [0, 1, 2].map(|c| [weights.get(w, c, 0, 2), weights.get(w, c, 1, 2)]);
+        assert_eq!(all(scaled), [[2.0, 3.0], [5.0, 5.0], [200.0, 300.0]]);
+        assert_eq!(all(sum), [[3.0, 4.0], [15.0, 15.0], [300.0, 400.0]]);
+        assert_eq!(all(masked), [[0.0, 4.0], [0.0, 15.0], [0.0, 400.0]]);
+    }
+}

@@ -19,8 +19,9 @@ use super::ggx::Ggx;
 use crate::bsdf::fresnel::{Fresnel, limited};
 use crate::bsdf::power::{exp2, log2};
 use crate::bsdf::select;
+use crate::math::elementary::floor_and_rest;
 use crate::math::quadrature::{Node, gauss_legendre};
-use glam::Vec3;
+use glam::{Mat4, Vec3, Vec4};
 use std::f32::consts::LN_2;
 
 /// Nodes of the rule.
@@ -35,13 +36,15 @@ const LINEAR: f32 = 6.0;
 const BEND: f32 = 0.04;
 const LEAST: f32 = super::MIN_ALPHA;
 
-/// Nodes filled up with empty ones to a whole vector.
-const WIDE: usize = 8;
+/// Vectors of four that hold a cell.
+const QUADS: usize = 2 * NODES / 4;
+/// Lanes that a row computes side by side.
+pub const BLOCK: usize = 8;
 
 /// Weights, times the distance of their nodes from the viewer's cosine, and the weights alone.
 ///
 /// Nodes are interpolated as centers of gravity, because those of almost no weight lie far away in one cell and not in the next.
-type Cell = [f32; 2 * WIDE];
+type Cell = [Vec4; QUADS];
 
 /// The cells of one width for all cosines.
 pub struct Row {
@@ -52,53 +55,65 @@ pub struct Row {
 /// Four cells, weighted.
 #[inline(always)]
 fn blend(cells: [&Cell; 4], weights: [f32; 4]) -> Cell {
-    let mut sum = [0.0; 2 * WIDE];
-    for k in 0..2 * WIDE {
-        let (near, far) =
-            (weights[0] * cells[0][k] + weights[1] * cells[1][k], weights[2] * cells[2][k] + weights[3] * cells[3][k]);
-        sum[k] = near + far;
+    let mut sum = [Vec4::ZERO; QUADS];
+    for q in 0..QUADS {
+        let near = cells[0][q] * weights[0] + cells[1][q] * weights[1];
+        sum[q] = near + (cells[2][q] * weights[2] + cells[3][q] * weights[3]);
     }
     sum
 }
 
-/// The sum of a whole vector, by halves.
+/// The cells of a block number by number, each number of all lanes together.
 #[inline(always)]
-fn sum(v: [f32; WIDE]) -> f32 {
-    ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
+fn transposed(cells: &[Cell; BLOCK]) -> [[f32; BLOCK]; 2 * NODES] {
+    let mut out = [[0.0; BLOCK]; 2 * NODES];
+    for first in [0, 4] {
+        for q in 0..QUADS {
+            let [a, b, c, d] = [cells[first][q], cells[first + 1][q], cells[first + 2][q], cells[first + 3][q]];
+            let four = Mat4::from_cols(a, b, c, d).transpose();
+            for (k, row) in [four.x_axis, four.y_axis, four.z_axis, four.w_axis].into_iter().enumerate() {
+                out[4 * q + k][first..first + 4].copy_from_slice(&row.to_array());
+            }
+        }
+    }
+    out
 }
 
-/// The integral of a Fresnel term by the rule of a cell.
+/// What one node adds to the integral of a Fresnel term.
 #[inline(always)]
-fn integral<F: Fresnel>(fresnel: &F, cell: &Cell, cos: f32) -> Vec3 {
-    // Plain loops over arrays, so that the Fresnel terms of one cell are computed side by side.
-    let (mut at, mut weight) = ([0.0; WIDE], [0.0; WIDE]);
-    for k in 0..WIDE {
-        weight[k] = cell[WIDE + k];
-        let away = select(weight[k] > 1e-9, cell[k] / weight[k].max(1e-9), 0.0);
-        at[k] = limited(cos + away, 0.0, 1.0);
-    }
-    let (mut x, mut y, mut z) = ([0.0; WIDE], [0.0; WIDE], [0.0; WIDE]);
-    if F::COLORED {
-        for k in 0..WIDE {
-            let color = fresnel.color(at[k]);
-            (x[k], y[k], z[k]) = (color.x * weight[k], color.y * weight[k], color.z * weight[k]);
-        }
-        return Vec3::new(sum(x), sum(y), sum(z)).clamp(Vec3::ZERO, Vec3::ONE);
-    }
-    for k in 0..WIDE {
-        x[k] = fresnel.largest(at[k]) * weight[k];
-    }
-    Vec3::splat(sum(x)).clamp(Vec3::ZERO, Vec3::ONE)
+fn term<F: Fresnel>(fresnel: &F, cos: f32, (moment, weight): (f32, f32)) -> Vec3 {
+    let away = select(weight > 1e-9, moment / weight.max(1e-9), 0.0);
+    let at = limited(cos + away, 0.0, 1.0);
+    if F::COLORED { fresnel.color(at) * weight } else { Vec3::splat(fresnel.largest(at) * weight) }
 }
 
 impl Row {
-    /// [`FacetTable::color`] of the row's width, with the same bits.
+    /// [`FacetTable::color`] of the row's width at many cosines, by component, with the same bits; only the first component
+    /// counts where a term has no color.
     #[inline(always)]
-    pub fn color<F: Fresnel>(&self, fresnel: &F, cos: f32) -> Vec3 {
-        let (column, by_column) = cubic(cosine_axis(cos, self.alpha), COSINES);
-        let [a, b, c, d] = column;
-        let cell = blend([&self.cells[a], &self.cells[b], &self.cells[c], &self.cells[d]], by_column);
-        integral(fresnel, &cell, cos)
+    pub fn colors<F: Fresnel>(&self, fresnel: &F, cos: &[f32; BLOCK]) -> [[f32; BLOCK]; 3] {
+        // Steps of their own: the first and the last run over lanes in SIMD, the middle over the numbers of a cell.
+        let (mut places, mut weights) = ([0; BLOCK], [[0.0; BLOCK]; 4]);
+        for l in 0..BLOCK {
+            let (place, w) = cubic(cosine_axis(cos[l], self.alpha), COSINES);
+            places[l] = place;
+            (weights[0][l], weights[1][l], weights[2][l], weights[3][l]) = (w[0], w[1], w[2], w[3]);
+        }
+        let mut cells = [[Vec4::ZERO; QUADS]; BLOCK];
+        for l in 0..BLOCK {
+            let [a, b, c, d] = around(places[l], COSINES);
+            let four = [&self.cells[a], &self.cells[b], &self.cells[c], &self.cells[d]];
+            cells[l] = blend(four, [weights[0][l], weights[1][l], weights[2][l], weights[3][l]]);
+        }
+        let numbers = transposed(&cells);
+        let (mut x, mut y, mut z) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+        for k in 0..NODES {
+            for l in 0..BLOCK {
+                let more = term(fresnel, cos[l], (numbers[k][l], numbers[NODES + k][l]));
+                (x[l], y[l], z[l]) = (x[l] + more.x, y[l] + more.y, z[l] + more.z);
+            }
+        }
+        [x, y, z]
     }
 }
 
@@ -138,12 +153,13 @@ impl FacetTable {
                 points.clear();
                 facets(&distribution, geometry, [alpha, cos], [&along, &across], &mut points);
                 let rule = gauss_rule(&points);
-                let mut cell = [0.0; 2 * WIDE];
+                let mut cell = [0.0; 2 * NODES];
                 for k in 0..NODES {
                     cell[k] = (rule[k].weight * (rule[k].x - f64::from(cos))) as f32;
-                    cell[WIDE + k] = rule[k].weight as f32;
+                    cell[NODES + k] = rule[k].weight as f32;
                 }
-                cells.push(cell);
+                let quad = |q: usize| Vec4::from_slice(&cell[4 * q..4 * q + 4]);
+                cells.push([quad(0), quad(1), quad(2)]);
             }
         }
         FacetTable { cells }
@@ -155,22 +171,24 @@ impl FacetTable {
     #[inline(always)]
     pub fn color<F: Fresnel>(&self, fresnel: &F, alpha: f32, cos: f32) -> Vec3 {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
-        let ([a, b, c, d], by_column) = cubic(cosine_axis(cos, alpha), COSINES);
-        let columns = [
-            self.over_widths(row, by_row, a),
-            self.over_widths(row, by_row, b),
-            self.over_widths(row, by_row, c),
-            self.over_widths(row, by_row, d),
-        ];
-        let cell = blend([&columns[0], &columns[1], &columns[2], &columns[3]], by_column);
-        integral(fresnel, &cell, cos)
+        let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
+        let (row, [a, b, c, d]) = (around(row, WIDTHS), around(column, COSINES));
+        let at = |j| self.over_widths(row, by_row, j);
+        let cell = blend([&at(a), &at(b), &at(c), &at(d)], by_column);
+        let mut sum = Vec3::ZERO;
+        for k in 0..NODES {
+            let number = |k: usize| cell[k / 4][k % 4];
+            sum += term(fresnel, cos, (number(k), number(NODES + k)));
+        }
+        sum.clamp(Vec3::ZERO, Vec3::ONE)
     }
 
     /// The cells of one width, 1e-3..1.
     #[inline(always)]
     pub fn row(&self, alpha: f32) -> Row {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
-        let mut cells = [[0.0; 2 * WIDE]; COSINES];
+        let row = around(row, WIDTHS);
+        let mut cells = [[Vec4::ZERO; QUADS]; COSINES];
         for (j, cell) in cells.iter_mut().enumerate() {
             *cell = self.over_widths(row, by_row, j);
         }
@@ -185,24 +203,27 @@ impl FacetTable {
     }
 }
 
-/// The four places around `place` (0..1) of so many, and their weights.
+/// Which of so many places comes next before `place` (0..1), and the weights of it and three around it: one before, two behind.
 ///
 /// Source: Catmull and Rom 1974; at the ends a straight line goes on.
 #[inline(always)]
-fn cubic(place: f32, count: usize) -> ([usize; 4], [f32; 4]) {
+fn cubic(place: f32, count: usize) -> (u32, [f32; 4]) {
+    let last = count as u32 - 2;
     let x = (place * (count - 1) as f32).clamp(0.0, (count - 1) as f32);
-    let i = (x as usize).min(count - 2);
-    let f = x - i as f32;
+    let i = floor_and_rest(x).0.min(last);
+    let f = x - i as i32 as f32;
     let (f2, f3) = (f * f, f * f * f);
-    let mut w = [f2 - 0.5 * (f3 + f), 1.5 * f3 - 2.5 * f2 + 1.0, 2.0 * f2 - 1.5 * f3 + 0.5 * f, 0.5 * (f3 - f2)];
-    let (before, after) = (i.max(1) - 1, (i + 2).min(count - 1));
-    if i == 0 {
-        w = [0.0, w[1] + 2.0 * w[0], w[2] - w[0], w[3]];
-    }
-    if i + 2 == count {
-        w = [w[0], w[1] - w[3], w[2] + 2.0 * w[3], 0.0];
-    }
-    ([before, i, i + 1, after], w)
+    let w = [f2 - 0.5 * (f3 + f), 1.5 * f3 - 2.5 * f2 + 1.0, 2.0 * f2 - 1.5 * f3 + 0.5 * f, 0.5 * (f3 - f2)];
+    let (first, last) = (select(i == 0, w[0], 0.0), select(i == last, w[3], 0.0));
+    let inner = [w[0] - first, w[1] + 2.0 * first - last, w[2] - first + 2.0 * last, w[3] - last];
+    (i, inner)
+}
+
+/// The four places that [`cubic`] weighs.
+#[inline(always)]
+fn around(i: u32, count: usize) -> [usize; 4] {
+    let i = (i as usize).min(count - 2);
+    [i.max(1) - 1, i, i + 1, (i + 2).min(count - 1)]
 }
 
 /// The width at a place of the axis, by bisection.
@@ -418,6 +439,29 @@ mod tests {
         }
         let single = gauss_rule(&[Node { x: 0.3, weight: 0.7 }]);
         assert!((single.iter().map(|n| n.weight * n.x).sum::<f64>() - 0.21).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_row_has_the_bits_of_its_table() {
+        use crate::bsdf::fresnel::{Conductor, Dielectric};
+        use crate::bsdf::params;
+        let table = FacetTable::build::<Ggx>(Geometry::Smith);
+        let glass = Dielectric::prepare(params([1.5]), 0);
+        let metal = Conductor::prepare(params([0.16, 0.42, 1.45, 3.5, 2.4, 1.9]), 0);
+        for alpha in [1e-3, 0.0173, 0.3, 0.77, 1.0] {
+            let row = table.row(alpha);
+            for first in 0..20 {
+                let cos = std::array::from_fn(|l| (first * BLOCK + l) as f32 / 159.0);
+                let ([one, ..], three) = (row.colors(&glass, &cos), row.colors(&metal, &cos));
+                for l in 0..BLOCK {
+                    let limit = |x: f32| x.clamp(0.0, 1.0).to_bits();
+                    assert_eq!(limit(one[l]), table.color(&glass, alpha, cos[l]).x.to_bits(), "{alpha} {}", cos[l]);
+                    let color = table.color(&metal, alpha, cos[l]).to_array();
+                    let row = [three[0][l], three[1][l], three[2][l]];
+                    assert_eq!(row.map(limit), color.map(f32::to_bits), "{alpha} {}", cos[l]);
+                }
+            }
+        }
     }
 
     #[test]

@@ -25,6 +25,7 @@ pub use ggx::Ggx;
 
 use super::fresnel::{Fresnel, limited, refracted};
 use super::{Eval, Params, Scatter, Side, View, select};
+use albedo::BLOCK;
 use distribution::{Distribution, Widths};
 use glam::Vec3;
 
@@ -284,8 +285,18 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         let widths = self.visible.0;
         if widths.x == widths.y {
             let row = table.row(self.width_toward(Vec3::Z));
-            for i in 0..n {
-                out[i] = self.taken(row.color(&self.fresnel, z[i].abs().min(1.0)));
+            let mut cos = [0.0; BLOCK];
+            for first in (0..n).step_by(BLOCK) {
+                let count = BLOCK.min(n - first);
+                cos[..count].copy_from_slice(&z[first..first + count]);
+                for c in &mut cos {
+                    *c = c.abs().min(1.0);
+                }
+                let [x, y, z] = row.colors(&self.fresnel, &cos);
+                for l in 0..count {
+                    let color = if F::COLORED { Vec3::new(x[l], y[l], z[l]) } else { Vec3::splat(x[l]) };
+                    out[first + l] = self.taken(color.clamp(Vec3::ZERO, Vec3::ONE));
+                }
             }
             return;
         }

@@ -204,7 +204,7 @@ pub fn simplex4<const D: usize>(seed: u32, x: f32, y: f32, z: f32, w: f32) -> Je
     const SKEW: f32 = 0.309_017;
     const BACK: f32 = 0.138_196_6;
     let s = (x + y + z + w) * SKEW;
-    let cell = [x, y, z, w].map(|c| cell_of(c + s));
+    let cell = [cell_of(x + s), cell_of(y + s), cell_of(z + s), cell_of(w + s)];
     let [i, j, k, l] = cell;
     let t = i.wrapping_add(j).wrapping_add(k).wrapping_add(l) as f32 * BACK;
     let [x0, y0, z0, w0] = [x - (i as f32 - t), y - (j as f32 - t), z - (k as f32 - t), w - (l as f32 - t)];
