@@ -4,7 +4,7 @@
 //! recursion, no stack, and a node that several parents share is visited once. What reaches a node under the same layer
 //! is summed there, so `Ci = Ci + Ci` fifty times is one lobe and not 2^50.
 
-use super::layering::{Layer, Layers, Side, Step, Top, surface_albedo};
+use super::layering::{Layer, Layers, Step, Top};
 use super::leaves::{Leaf, LeafContext, prepare_leaf};
 use super::lobes::{Dropped, Lobe, Lobes};
 use super::settings::Layering;
@@ -412,7 +412,7 @@ fn pick(lobes: &mut Lobes) {
     total.resize(n, 0.0);
     for (index, lobe) in lobes.lobes.iter().enumerate() {
         let out = &mut lobes.picks[index * n..(index + 1) * n];
-        surface_albedo(&lobes.surfaces, &lobes.surfaces.list[lobe.surface as usize], Side::View, out);
+        lobes.layers.albedo_seen(&lobes.surfaces, lobe.surface, out);
         let through = if lobe.layer == NONE { &lobes.ones } else { lobes.layers.through_of(lobe.layer) };
         let weight = &lobes.weights[3 * n * index..3 * n * (index + 1)];
         let medium = lobes.media.get(lobes.layers.medium(lobe.layer)).filter(|medium| medium.colored);

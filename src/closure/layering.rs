@@ -84,6 +84,9 @@ pub struct Layers {
     pub steps: Vec<Step>,
     /// Surfaces with the offsets of their t, for [`Step::Leaves`].
     pub leaves: Vec<(u32, u32)>,
+    /// Where [`Layers::seen`] has the albedo of each surface toward the viewer, or [`NONE`].
+    seen_at: Vec<u32>,
+    seen: Vec<f32>,
     alpha_o: Vec<f32>,
     through: Vec<f32>,
     inverse_mean: Vec<f32>,
@@ -111,6 +114,19 @@ impl Layers {
         &self.through[layer as usize * n..(layer as usize + 1) * n]
     }
 
+    /// The albedo of a surface toward the viewer, for picking; a covering sheen's is known by now.
+    pub fn albedo_seen(&self, surfaces: &Surfaces, index: u32, out: &mut [f32]) {
+        let surface = &surfaces.list[index as usize];
+        let at = self.seen_at.get(index as usize).copied().filter(|&at| at != NONE);
+        match at {
+            // A facet's is an estimate when picking, and a matter of tables when covering.
+            Some(at) if !matches!(surface.kind, Kind::Microfacet { .. }) => {
+                out.copy_from_slice(&self.seen[at as usize..at as usize + out.len()]);
+            }
+            _ => surface_albedo(surfaces, surface, Side::View, out),
+        }
+    }
+
     /// How many layers lie over a lobe.
     pub fn depth(&self, layer: u32) -> u32 {
         self.list.get(layer as usize).map_or(0, |l| l.depth)
@@ -134,6 +150,9 @@ impl Layers {
             store.resize(n * self.list.len(), 1.0);
         }
         self.scratch.resize(n, 0.0);
+        self.seen.clear();
+        self.seen_at.clear();
+        self.seen_at.resize(surfaces.list.len(), NONE);
         self.run_steps(surfaces, Side::View);
         for index in 0..self.list.len() {
             let layer = self.list[index];
@@ -143,6 +162,10 @@ impl Layers {
                 _ => {
                     top_albedo(&layer, surfaces, Side::View, &self.values, &mut self.scratch);
                     alpha_lanes(surfaces.column(layer.t), &self.scratch, alpha);
+                    if let Top::Surface(surface) = layer.top {
+                        self.seen_at[surface as usize] = self.seen.len() as u32;
+                        self.seen.extend_from_slice(&self.scratch);
+                    }
                 }
             }
             let (before, here) = self.through.split_at_mut(index * n);

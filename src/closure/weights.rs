@@ -162,6 +162,12 @@ pub fn finite_and_some(values: &[f32]) -> bool {
     some != 0 && broken == 0
 }
 
+/// Is every one a finite number?
+#[multiversion(targets("x86_64+avx2"))]
+pub fn all_finite(values: &[f32]) -> bool {
+    values.iter().fold(0, |broken, value| broken | (value.to_bits() & 0x7fff_ffff >= 0x7f80_0000) as u32) == 0
+}
+
 /// Turns the albedo of a lobe into its share, and adds that to the total of all lobes: luminance of the weight's magnitude,
 /// albedo, and what the layers let through.
 #[multiversion(targets("x86_64+avx2"))]
@@ -198,6 +204,7 @@ mod tests {
         assert!(with(1e-45) && with(-3.0) && with(f32::MAX));
         assert!(!with(0.0) && !with(-0.0) && !with(f32::NAN) && !with(f32::INFINITY) && !with(-f32::INFINITY));
         assert!(!finite_and_some(&[1.0, f32::NAN]) && !finite_and_some(&[]));
+        assert!(all_finite(&[0.0, 1.0, -f32::MAX]) && !all_finite(&[0.0, f32::NAN]) && !all_finite(&[f32::INFINITY]));
     }
 
     #[test]

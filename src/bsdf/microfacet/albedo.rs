@@ -71,8 +71,11 @@ fn transposed(cells: &[Cell; BLOCK]) -> [[f32; BLOCK]; 2 * NODES] {
         for q in 0..QUADS {
             let [a, b, c, d] = [cells[first][q], cells[first + 1][q], cells[first + 2][q], cells[first + 3][q]];
             let four = Mat4::from_cols(a, b, c, d).transpose();
-            for (k, row) in [four.x_axis, four.y_axis, four.z_axis, four.w_axis].into_iter().enumerate() {
-                out[4 * q + k][first..first + 4].copy_from_slice(&row.to_array());
+            let rows = four.to_cols_array();
+            for k in 0..4 {
+                for l in 0..4 {
+                    out[4 * q + k][first + l] = rows[4 * k + l];
+                }
             }
         }
     }
@@ -173,12 +176,15 @@ impl FacetTable {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
         let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
         let (row, [a, b, c, d]) = (around(row, WIDTHS), around(column, COSINES));
-        let at = |j| self.over_widths(row, by_row, j);
-        let cell = blend([&at(a), &at(b), &at(c), &at(d)], by_column);
+        let (a, b) = (self.over_widths(row, by_row, a), self.over_widths(row, by_row, b));
+        let (c, d) = (self.over_widths(row, by_row, c), self.over_widths(row, by_row, d));
+        let [p, q, r] = blend([&a, &b, &c, &d], by_column);
+        let (p, q, r) = (p.to_array(), q.to_array(), r.to_array());
+        let moments = [p[0], p[1], p[2], p[3], q[0], q[1]];
+        let weights = [q[2], q[3], r[0], r[1], r[2], r[3]];
         let mut sum = Vec3::ZERO;
         for k in 0..NODES {
-            let number = |k: usize| cell[k / 4][k % 4];
-            sum += term(fresnel, cos, (number(k), number(NODES + k)));
+            sum += term(fresnel, cos, (moments[k], weights[k]));
         }
         sum.clamp(Vec3::ZERO, Vec3::ONE)
     }
@@ -198,8 +204,10 @@ impl FacetTable {
     /// The cell of one cosine between four widths.
     #[inline(always)]
     fn over_widths(&self, row: [usize; 4], by_row: [f32; 4], j: usize) -> Cell {
-        let at = |i: usize| &self.cells[i * COSINES + j];
-        blend([at(row[0]), at(row[1]), at(row[2]), at(row[3])], by_row)
+        let [a, b, c, d] = row;
+        let cells = &self.cells;
+        let four = [&cells[a * COSINES + j], &cells[b * COSINES + j], &cells[c * COSINES + j], &cells[d * COSINES + j]];
+        blend(four, by_row)
     }
 }
 
