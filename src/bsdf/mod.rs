@@ -122,6 +122,15 @@ pub trait Scatter: Copy {
     fn top_albedo(&self, w: Vec3) -> f32 {
         self.albedo(w.z.abs().min(1.0))
     }
+    /// [`Scatter::top_albedo`] of many directions, one column a component, with the same bits.
+    #[inline(always)]
+    fn top_albedos(&self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
+        let n = out.len();
+        let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
+        for i in 0..n {
+            out[i] = self.top_albedo(Vec3::new(x[i], y[i], z[i]));
+        }
+    }
     /// Mean of [`Scatter::top_albedo`] over the hemisphere, weighted by the cosine, at an azimuth between x and y.
     ///
     /// Source: Gauss-Legendre of 8 nodes in the cube root of the cosine, exact for albedos of degree 10 in it.

@@ -23,6 +23,8 @@ pub trait Source<M>: Copy {
     fn narrow(self, lanes: usize) -> Self;
     /// The model of a lane.
     fn at(&self, lane: usize) -> M;
+    /// The top albedos of all lanes.
+    fn top_albedos(&self, w: Triples<'_>, out: &mut [f32]);
 }
 
 /// One model for all lanes: its constants are computed outside the loop.
@@ -33,7 +35,7 @@ pub struct Same<M>(pub M);
 #[derive(Clone, Copy)]
 pub struct Each<'a>(pub [&'a [f32]; MAX_PARAMS]);
 
-impl<M: Copy> Source<M> for Same<M> {
+impl<M: Scatter> Source<M> for Same<M> {
     #[inline(always)]
     fn narrow(self, _lanes: usize) -> Self {
         self
@@ -42,6 +44,11 @@ impl<M: Copy> Source<M> for Same<M> {
     #[inline(always)]
     fn at(&self, _lane: usize) -> M {
         self.0
+    }
+
+    #[inline(always)]
+    fn top_albedos(&self, w: Triples<'_>, out: &mut [f32]) {
+        self.0.top_albedos([w.x, w.y, w.z], out);
     }
 }
 
@@ -56,6 +63,14 @@ impl<M: Scatter> Source<M> for Each<'_> {
     fn at(&self, lane: usize) -> M {
         let value = |k: usize| if k < M::PARAMS { self.0[k][lane] } else { 0.0 };
         M::prepare(twelve!(value))
+    }
+
+    #[inline(always)]
+    fn top_albedos(&self, w: Triples<'_>, out: &mut [f32]) {
+        for (i, value) in out.iter_mut().enumerate() {
+            let model: M = self.at(i);
+            *value = model.top_albedo(w.at(i));
+        }
     }
 }
 
@@ -255,10 +270,7 @@ pub fn albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut 
 /// The albedo of what lies on top of something for local directions, as exact as the model knows it.
 #[multiversion(targets("x86_64+avx2"))]
 pub fn top_albedo_lanes<M: Scatter, S: Source<M>>(source: S, w: Triples<'_>, out: &mut [f32]) {
-    let (w, source) = (w.narrow(out.len()), source.narrow(out.len()));
-    for (i, value) in out.iter_mut().enumerate() {
-        *value = source.at(i).top_albedo(w.at(i));
-    }
+    source.narrow(out.len()).top_albedos(w.narrow(out.len()), out);
 }
 
 /// The mean albedo of one model.
@@ -446,5 +458,16 @@ pub fn pick_lanes(lobe: u32, pick: &[f32], left: &mut [f32], rest: &mut [f32], c
         chosen[i] = if mine { lobe } else { chosen[i] };
         left[i] = select(mine, -1.0, left[i] - select(open, pick[i], 0.0));
         left[i] = select(open && !mine, left[i].max(0.0), left[i]);
+    }
+}
+
+/// Gives lanes that rounding left just behind the last part to the last lobe that can be picked.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn rest_lanes(none: u32, last: &[u32], rest: &mut [f32], chosen: &mut [u32]) {
+    let n = chosen.len();
+    let (last, rest) = (&last[..n], &mut rest[..n]);
+    for i in 0..n {
+        rest[i] = select(chosen[i] == none, 0.999_999_94, rest[i]);
+        chosen[i] = if chosen[i] == none { last[i] } else { chosen[i] };
     }
 }

@@ -4,12 +4,13 @@
 //! recursion, no stack, and a node that several parents share is visited once. What reaches a node under the same layer
 //! is summed there, so `Ci = Ci + Ci` fifty times is one lobe and not 2^50.
 
-use super::layering::{Layer, Layers, Side, Step, Top, surface_albedo};
+use super::layering::{Layer, Layers, Step, Top};
 use super::leaves::{Leaf, LeafContext, prepare_leaf};
 use super::lobes::{Dropped, Lobe, Lobes};
 use super::settings::Layering;
 use super::surfaces::{NONE, Seen, Surfaces};
 use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
+use super::weights::{Operand, Weight, Weights, finite_and_some, multiply, normalise_lanes, share_lanes};
 use crate::lang::closures::{ClosureSpec, ClosureTable, Model};
 use crate::math::columns::Column3;
 use std::collections::HashMap;
@@ -19,14 +20,6 @@ use std::collections::HashMap;
 const MOST: usize = 1 << 17;
 /// How many dropped lanes are listed.
 const MOST_DROPPED: usize = 256;
-
-/// A weight on its way down.
-#[derive(Clone, Copy, Debug)]
-enum Weight {
-    Uniform([f32; 3]),
-    /// Offset of three columns in [`Sweep::columns`].
-    Columns(u32),
-}
 
 /// What reaches a node, as a list a node.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +34,7 @@ struct Entry {
 pub struct Sweep {
     heads: Vec<u32>,
     entries: Vec<Entry>,
-    columns: Vec<f32>,
+    weights: Weights,
     in_top: Vec<bool>,
     step_of: Vec<u32>,
     leaves_of: HashMap<(u32, u32), (u32, u32)>,
@@ -58,39 +51,8 @@ impl Sweep {
         self.step_of.resize(nodes, 0);
         self.leaves_of.clear();
         self.entries.clear();
-        self.columns.clear();
+        self.weights.clear();
         self.emitters.clear();
-    }
-
-    fn get(&self, weight: Weight, component: usize, lane: usize, lanes: usize) -> f32 {
-        match weight {
-            Weight::Uniform(value) => value[component],
-            Weight::Columns(at) => self.columns[at as usize + component * lanes + lane],
-        }
-    }
-
-    fn make(&mut self, lanes: usize, value: impl Fn(&Self, usize, usize) -> f32) -> Weight {
-        let at = self.columns.len() as u32;
-        for component in 0..3 {
-            for lane in 0..lanes {
-                let v = value(self, component, lane);
-                self.columns.push(v);
-            }
-        }
-        Weight::Columns(at)
-    }
-
-    fn times(&mut self, tree: &Tree, weight: Weight, factor: [Floats; 3]) -> Weight {
-        if let (Weight::Uniform(w), [Floats::Uniform(x), Floats::Uniform(y), Floats::Uniform(z)]) = (weight, factor) {
-            return Weight::Uniform([w[0] * x, w[1] * y, w[2] * z]);
-        }
-        let n = tree.lanes;
-        self.make(n, |this, c, lane| this.get(weight, c, lane, n) * tree.float(factor[c], lane))
-    }
-
-    /// The weight where a condition holds and zero elsewhere.
-    fn masked(&mut self, lanes: usize, weight: Weight, keep: impl Fn(usize) -> bool) -> Weight {
-        self.make(lanes, |this, c, lane| if keep(lane) { this.get(weight, c, lane, lanes) } else { 0.0 })
     }
 
     /// Sends a weight to a node; false when there are too many.
@@ -100,10 +62,7 @@ impl Sweep {
         while at != NONE {
             let entry = self.entries[at as usize];
             if entry.layer == layer {
-                let sum = match (entry.weight, weight) {
-                    (Weight::Uniform(a), Weight::Uniform(b)) => Weight::Uniform(std::array::from_fn(|k| a[k] + b[k])),
-                    (a, b) => self.make(lanes, |t, c, lane| t.get(a, c, lane, lanes) + t.get(b, c, lane, lanes)),
-                };
+                let sum = self.weights.plus(lanes, entry.weight, weight);
                 self.entries[at as usize].weight = sum;
                 return true;
             }
@@ -164,7 +123,7 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
         let mut name = "too many lobes";
         let fits = match tree.nodes[index as usize] {
             Node::Scale { weight: factor, child } => {
-                let weight = sweep.times(tree, weight, factor);
+                let weight = sweep.weights.times(tree, weight, factor);
                 sweep.send(n, Some(child), layer, weight)
             }
             Node::Add(a, b) => sweep.send(n, Some(a), layer, weight) && sweep.send(n, Some(b), layer, weight),
@@ -172,8 +131,8 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
                 sweep.send(n, if mask != 0 { then } else { otherwise }, layer, weight)
             }
             Node::Select { mask, then, otherwise } => {
-                let yes = then.map(|_| sweep.masked(n, weight, |lane| tree.int(mask, lane) != 0));
-                let no = otherwise.map(|_| sweep.masked(n, weight, |lane| tree.int(mask, lane) == 0));
+                let yes = then.map(|_| sweep.weights.masked(n, weight, |lane| tree.int(mask, lane) != 0));
+                let no = otherwise.map(|_| sweep.weights.masked(n, weight, |lane| tree.int(mask, lane) == 0));
                 yes.is_none_or(|w| sweep.send(n, then, layer, w))
                     && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
             }
@@ -246,7 +205,7 @@ fn place(
     let n = tree.lanes;
     let mut fits = true;
     if leaf.emits || leaf.hole {
-        let weight = leaf.tint.map_or(weight, |tint| lobes.sweep.times(tree, weight, tint));
+        let weight = leaf.tint.map_or(weight, |tint| lobes.sweep.weights.times(tree, weight, tint));
         lobes.sweep.emitters.push((weight, layer, leaf.hole, name.1));
     }
     fits &= lobes.sweep.send(n, leaf.top, layer, weight);
@@ -280,7 +239,7 @@ fn place(
             weight
         } else {
             let gate = surfaces.column(cover.gate);
-            lobes.sweep.masked(n, weight, |lane| gate[lane] != 0.0)
+            lobes.sweep.weights.masked(n, weight, |lane| gate[lane] != 0.0)
         };
         fits &= lobes.sweep.send(n, leaf.base, inner, weight);
     }
@@ -310,18 +269,13 @@ fn add_lobe(
     let n = tree.lanes;
     let start = lobes.weights.len();
     let made = &lobes.surfaces.list[surface as usize];
+    lobes.weights.resize(start + 3 * n, 0.0);
     for component in 0..3 {
-        let factor = tint.map_or(Floats::Uniform(1.0), |t| t[component]);
-        if let (Weight::Uniform(w), Floats::Uniform(factor)) = (weight, factor) {
-            lobes.weights.resize(start + (component + 1) * n, w[component] * factor);
-            continue;
-        }
-        for lane in 0..n {
-            lobes.weights.push(lobes.sweep.get(weight, component, lane, n) * tree.float(factor, lane));
-        }
+        let factor = tint.map_or(Operand::One(1.0), |t| Operand::of(tree, t[component]));
+        let out = &mut lobes.weights[start + component * n..start + (component + 1) * n];
+        multiply(lobes.sweep.weights.operand(weight, component, n), factor, out);
     }
-    let sum = lobes.weights[start..].iter().fold(0.0, |sum, w| sum + w.abs());
-    if made.gate == NONE && sum > 0.0 && sum < f32::INFINITY {
+    if made.gate == NONE && finite_and_some(&lobes.weights[start..]) {
         // The common case: every weight is a number and the surface exists in every lane.
         lobes.lobes.push(Lobe { surface, layer });
         return true;
@@ -332,7 +286,7 @@ fn add_lobe(
         let gate = lobes.surfaces.gate(made, lane);
         let w = at.map(|i| lobes.weights[i]);
         // Lanes that did not run this closure have weight zero before the tint; their parameters do not matter.
-        let absent = (0..3).all(|c| lobes.sweep.get(weight, c, lane, n) == 0.0) || gate == 0.0;
+        let absent = (0..3).all(|c| lobes.sweep.weights.get(weight, c, lane, n) == 0.0) || gate == 0.0;
         let broken = gate.is_nan() || w.iter().any(|v| !v.is_finite());
         if broken && !absent {
             drop_lane(&mut lobes.dropped, name, lane);
@@ -433,7 +387,7 @@ fn emit(lobes: &mut Lobes) {
         for lane in 0..n {
             let through = if layer == NONE { 1.0 } else { lobes.layers.through_of(layer)[lane] };
             let tint = lobes.media.get(lobes.layers.medium(layer)).map_or([1.0; 3], |m| m.viewer_tint(lane).to_array());
-            let [x, y, z] = std::array::from_fn(|c| lobes.sweep.get(weight, c, lane, n) * through * tint[c]);
+            let [x, y, z] = std::array::from_fn(|c| lobes.sweep.weights.get(weight, c, lane, n) * through * tint[c]);
             if !(x.is_finite() && y.is_finite() && z.is_finite()) {
                 drop_lane(&mut lobes.dropped, (if hole { "holdout" } else { "emission" }, node), lane);
             } else if hole {
@@ -458,22 +412,16 @@ fn pick(lobes: &mut Lobes) {
     total.resize(n, 0.0);
     for (index, lobe) in lobes.lobes.iter().enumerate() {
         let out = &mut lobes.picks[index * n..(index + 1) * n];
-        surface_albedo(&lobes.surfaces, &lobes.surfaces.list[lobe.surface as usize], Side::View, out);
+        lobes.layers.albedo_seen(&lobes.surfaces, lobe.surface, out);
         let through = if lobe.layer == NONE { &lobes.ones } else { lobes.layers.through_of(lobe.layer) };
         let weight = &lobes.weights[3 * n * index..3 * n * (index + 1)];
-        let (x, rest) = weight.split_at(n);
-        let (y, z) = rest.split_at(n);
-        let (through, total) = (&through[..n], &mut total[..n]);
         let medium = lobes.media.get(lobes.layers.medium(lobe.layer)).filter(|medium| medium.colored);
         for i in (0..n).filter(|_| medium.is_some()) {
             out[i] *= medium.map_or(1.0, |medium| medium.viewer_tint(i).element_sum() / 3.0);
         }
-        for i in 0..n {
-            let luminance = 0.2126 * x[i].abs() + 0.7152 * y[i].abs() + 0.0722 * z[i].abs();
-            // An albedo is an estimate: a lobe that may scatter is never excluded for it.
-            out[i] = (luminance * out[i].max(1e-3) * through[i]).min(1e30);
-            total[i] += out[i];
-        }
+        let (x, rest) = weight.split_at(n);
+        let (y, z) = rest.split_at(n);
+        share_lanes([x, y, z], through, out, &mut total);
     }
     for value in &mut total {
         // The inverse of a smaller sum would be infinite.
@@ -481,10 +429,7 @@ fn pick(lobes: &mut Lobes) {
     }
     for index in 0..lobes.lobes.len() {
         let picks = &mut lobes.picks[index * n..(index + 1) * n];
-        for ((pick, inverse), last) in picks.iter_mut().zip(&total).zip(&mut lobes.last) {
-            *pick *= inverse;
-            *last = if *pick > 0.0 { index as u32 } else { *last };
-        }
+        normalise_lanes(index as u32, &total, picks, &mut lobes.last);
     }
     lobes.side = total;
 }

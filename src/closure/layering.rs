@@ -11,10 +11,12 @@ use super::kinds::with_source;
 use super::media::Media;
 use super::settings::Layering;
 use super::surfaces::{NONE, Surface, Surfaces};
+use super::weights::{Operand, multiply};
 use crate::bsdf::specular::{reflection, refraction};
 use crate::bsdf::{GAUSS, between};
 use crate::math::columns::Column3;
 use glam::Vec3;
+use multiversion::multiversion;
 use std::borrow::Cow;
 
 /// Which direction an albedo is asked for.
@@ -82,6 +84,9 @@ pub struct Layers {
     pub steps: Vec<Step>,
     /// Surfaces with the offsets of their t, for [`Step::Leaves`].
     pub leaves: Vec<(u32, u32)>,
+    /// Where [`Layers::seen`] has the albedo of each surface toward the viewer, or [`NONE`].
+    seen_at: Vec<u32>,
+    seen: Vec<f32>,
     alpha_o: Vec<f32>,
     through: Vec<f32>,
     inverse_mean: Vec<f32>,
@@ -109,6 +114,19 @@ impl Layers {
         &self.through[layer as usize * n..(layer as usize + 1) * n]
     }
 
+    /// The albedo of a surface toward the viewer, for picking; a covering sheen's is known by now.
+    pub fn albedo_seen(&self, surfaces: &Surfaces, index: u32, out: &mut [f32]) {
+        let surface = &surfaces.list[index as usize];
+        let at = self.seen_at.get(index as usize).copied().filter(|&at| at != NONE);
+        match at {
+            // A facet's is an estimate when picking, and a matter of tables when covering.
+            Some(at) if !matches!(surface.kind, Kind::Microfacet { .. }) => {
+                out.copy_from_slice(&self.seen[at as usize..at as usize + out.len()]);
+            }
+            _ => surface_albedo(surfaces, surface, Side::View, out),
+        }
+    }
+
     /// How many layers lie over a lobe.
     pub fn depth(&self, layer: u32) -> u32 {
         self.list.get(layer as usize).map_or(0, |l| l.depth)
@@ -132,6 +150,9 @@ impl Layers {
             store.resize(n * self.list.len(), 1.0);
         }
         self.scratch.resize(n, 0.0);
+        self.seen.clear();
+        self.seen_at.clear();
+        self.seen_at.resize(surfaces.list.len(), NONE);
         self.run_steps(surfaces, Side::View);
         for index in 0..self.list.len() {
             let layer = self.list[index];
@@ -140,17 +161,15 @@ impl Layers {
                 (Top::Boundary, Some(medium)) => alpha.copy_from_slice(&medium.pass_o),
                 _ => {
                     top_albedo(&layer, surfaces, Side::View, &self.values, &mut self.scratch);
-                    let t = surfaces.column(layer.t);
-                    for i in 0..n {
-                        alpha[i] = (1.0 - t[i] * self.scratch[i]).clamp(0.0, 1.0);
+                    alpha_lanes(surfaces.column(layer.t), &self.scratch, alpha);
+                    if let Top::Surface(surface) = layer.top {
+                        self.seen_at[surface as usize] = self.seen.len() as u32;
+                        self.seen.extend_from_slice(&self.scratch);
                     }
                 }
             }
             let (before, here) = self.through.split_at_mut(index * n);
-            let parent = column_or(before, layer.parent, ones);
-            for i in 0..n {
-                here[i] = parent[i] * alpha[i];
-            }
+            multiply(Operand::Many(column_or(before, layer.parent, ones)), Operand::Many(alpha), &mut here[..n]);
         }
         if self.list.iter().any(|layer| layer.rule == Layering::Kelemen) {
             self.prepare_means(surfaces);
@@ -279,6 +298,16 @@ impl Layers {
                 }
             }
         }
+    }
+}
+
+/// What a top of coverage `t` lets through.
+#[multiversion(targets("x86_64+avx2"))]
+fn alpha_lanes(t: &[f32], top: &[f32], alpha: &mut [f32]) {
+    let n = alpha.len();
+    let (t, top) = (&t[..n], &top[..n]);
+    for i in 0..n {
+        alpha[i] = (1.0 - t[i] * top[i]).clamp(0.0, 1.0);
     }
 }
 

@@ -12,6 +12,7 @@ mod sampling;
 pub mod settings;
 mod surfaces;
 pub mod tree;
+mod weights;
 
 pub use lobes::{Dropped, Evaluation, LobeInfo, Lobes};
 pub use sampling::{Samples, event};

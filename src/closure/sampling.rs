@@ -1,6 +1,6 @@
 //! Sampling: pick one lobe a lane, sample it, weigh the direction by the whole mixture.
 
-use super::batch::{Triples, pick_lanes, sample_lanes, weigh_lanes};
+use super::batch::{Triples, pick_lanes, rest_lanes, sample_lanes, weigh_lanes};
 use super::kinds::Kind;
 use super::kinds::with_source;
 use super::lobes::{Evaluation, Lobes};
@@ -69,10 +69,20 @@ impl Lobes {
         self.evaluate(&out.wi, &mut evaluation);
         let (x, y, z) = (&mut out.weight.x, &mut out.weight.y, &mut out.weight.z);
         weigh_lanes(Triples::of(&evaluation.f_cos), &evaluation.pdf, x, y, z, &mut out.pdf);
+        self.scratch.evaluation = evaluation;
+        let mut events = self.lobes.iter().map(|lobe| self.surfaces.list[lobe.surface as usize].kind.event());
+        let first = events.next().unwrap_or(event::NONE);
+        let scatters = matches!(first, event::DIFFUSE | event::GLOSSY);
+        if scatters && events.all(|event| event == first) {
+            // The common case: lobes of one kind, all of which have a density.
+            for (event, pdf) in out.event.iter_mut().zip(&out.pdf) {
+                *event = if *pdf > 0.0 { first } else { event::NONE };
+            }
+            return;
+        }
         for lane in 0..n {
             self.settle(lane, out);
         }
-        self.scratch.evaluation = evaluation;
     }
 
     /// Picks a lobe in every lane by the third number, whose remainder serves as a fresh one.
@@ -88,13 +98,7 @@ impl Lobes {
             let pick = &self.picks[index * n..(index + 1) * n];
             pick_lanes(index as u32, pick, &mut scratch.left, &mut scratch.xi.z, &mut scratch.chosen);
         }
-        for lane in 0..n {
-            // Rounding may leave a number just behind the last part.
-            if scratch.chosen[lane] == NONE {
-                scratch.chosen[lane] = self.last[lane];
-                scratch.xi.z[lane] = 0.999_999_94;
-            }
-        }
+        rest_lanes(NONE, &self.last, &mut scratch.xi.z, &mut scratch.chosen);
     }
 
     /// Draws the directions, lobe by lobe; lobes that no lane chose cost nothing.

@@ -12,6 +12,7 @@ use super::batch::{
 };
 use super::kinds::{Kind, with_source};
 use super::media::Media;
+use super::weights::all_finite;
 use crate::bsdf::{MAX_PARAMS, Params, Scatter};
 use crate::closure::tree::{Floats, Tree};
 use crate::math::columns::Column3;
@@ -205,35 +206,63 @@ impl Surfaces {
         }
         let mut surface = Surface { kind, params: Values::Uniform(constant), frame, gate, view: 0, closure };
         if inside || broken || constant.iter().any(|v| !v.is_finite()) {
-            let bad = |this: &Self, lane: usize| {
-                broken && this.frames[frame as usize].broken[lane] > 0.0
-                    || params.iter().any(|&p| !tree.float(p, lane).is_finite())
-            };
-            if (0..self.lanes).any(|lane| bad(self, lane)) {
-                let gates: u32 = self.data.len() as u32;
-                for lane in 0..self.lanes {
-                    let value = if bad(self, lane) { f32::NAN } else { self.gate(&surface, lane) };
-                    self.data.push(value);
-                }
-                surface.gate = gates;
+            let finite = params.iter().all(|&param| match param {
+                Floats::Uniform(value) => value.is_finite(),
+                Floats::Varying(at) => all_finite(&tree.floats[at as usize..at as usize + self.lanes]),
+            });
+            if broken || !finite {
+                surface.gate = self.push_gate(tree, &surface, params, broken);
             }
             // The others are never read.
             let mut offsets = [0; MAX_PARAMS];
             for k in 0..params.len() {
-                offsets[k] = self.data.len() as u32;
-                for lane in 0..self.lanes {
-                    let value = tree.float(params[k], lane);
-                    let value = if value.is_finite() { value } else { 0.0 };
-                    let flip =
-                        eta == Some(k) && inside && self.frames[frame as usize].inside[lane] > 0.0 && value > 0.0;
-                    self.data.push(if flip { 1.0 / value } else { value });
-                }
+                let flips = inside && eta == Some(k);
+                offsets[k] = self.push_param(tree, params[k], flips.then_some(frame), finite);
             }
             surface.params = Values::Columns(offsets);
         }
         self.list.push(surface);
         self.look();
         self.list.len() as u32 - 1
+    }
+
+    /// A surface's gate, not a number in lanes with a parameter or normal that is none.
+    fn push_gate(&mut self, tree: &Tree, surface: &Surface, params: &[Floats], broken: bool) -> u32 {
+        let bad = |this: &Self, lane: usize| {
+            broken && this.frames[surface.frame as usize].broken[lane] > 0.0
+                || params.iter().any(|&p| !tree.float(p, lane).is_finite())
+        };
+        if !(0..self.lanes).any(|lane| bad(self, lane)) {
+            return surface.gate;
+        }
+        let at = self.data.len() as u32;
+        for lane in 0..self.lanes {
+            let value = if bad(self, lane) { f32::NAN } else { self.gate(surface, lane) };
+            self.data.push(value);
+        }
+        at
+    }
+
+    /// A column of a parameter, 0 where it is no number; inverted in the lanes that are inside the frame `flip`.
+    fn push_param(&mut self, tree: &Tree, param: Floats, flip: Option<u32>, finite: bool) -> u32 {
+        let at = self.data.len();
+        match (param, flip) {
+            (Floats::Varying(from), None) if finite => {
+                self.data.extend_from_slice(&tree.floats[from as usize..from as usize + self.lanes]);
+            }
+            (Floats::Uniform(value), None) => {
+                self.data.resize(at + self.lanes, if value.is_finite() { value } else { 0.0 });
+            }
+            _ => {
+                for lane in 0..self.lanes {
+                    let value = tree.float(param, lane);
+                    let value = if value.is_finite() { value } else { 0.0 };
+                    let inside = flip.is_some_and(|frame| self.frames[frame as usize].inside[lane] > 0.0);
+                    self.data.push(if inside && value > 0.0 { 1.0 / value } else { value });
+                }
+            }
+        }
+        at as u32
     }
 
     /// Computes what the newest surface derives from the viewer.
@@ -285,8 +314,7 @@ impl Surfaces {
         let from = NormalColumns { given: Triples::of(&self.given), wo: Triples::of(wo), ng: Triples::of(ng) };
         let normals = &mut frame.normal;
         normal_lanes(from, &mut normals.x, &mut normals.y, &mut normals.z, &mut frame.inside, &mut frame.broken);
-        frame.any_inside = frame.inside.iter().sum::<f32>() > 0.0;
-        frame.any_broken = frame.broken.iter().sum::<f32>() > 0.0;
+        (frame.any_inside, frame.any_broken) = (any(&frame.inside), any(&frame.broken));
         let (t, b) = (&mut frame.tangent, &mut frame.bitangent);
         tangent_lanes(Triples::of(&frame.normal), &mut t.x, &mut t.y, &mut t.z, &mut b.x, &mut b.y, &mut b.z);
         if let Some(u) = tangent {
@@ -301,6 +329,11 @@ impl Surfaces {
         localise_lanes(axes, Triples::of(wo), &mut frame.wo.x, &mut frame.wo.y, &mut frame.wo.z);
         index as u32
     }
+}
+
+/// Is any number not +0? Words need no order, as a sum of floats would.
+fn any(values: &[f32]) -> bool {
+    values.iter().fold(0, |bits, value| bits | value.to_bits()) != 0
 }
 
 /// Writes a column of the tree as one number a lane.

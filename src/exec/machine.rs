@@ -246,6 +246,15 @@ impl Run<'_> {
     fn block(&mut self, block: &Block) {
         for node in block {
             match node {
+                // Most instructions are of these two kinds, which cannot end a lane's way through the block.
+                Node::Instr(Instr::Binary(op, d, a, b)) => {
+                    self.binary(*op, *d, *a, *b);
+                    continue;
+                }
+                Node::Instr(Instr::Unary(op, d, a)) => {
+                    self.unary(*op, *d, *a);
+                    continue;
+                }
                 Node::Instr(instr) => self.instr(instr),
                 Node::If(condition, a, b) => self.if_else(*condition, a, b),
                 Node::Loop { head, condition, body, span } => self.repeat(head, *condition, body, *span),
@@ -372,13 +381,29 @@ impl Run<'_> {
         self.stopped = true;
     }
 
+    fn unary(&mut self, op: crate::ir::op::Unary, d: Reg, a: Reg) {
+        self.budget = self.budget.saturating_sub(1);
+        if let Ok([dst, a]) = self.regs.floats.get_disjoint_mut([d.0 as usize, a.0 as usize]) {
+            k::unary(op, dst, a);
+        }
+    }
+
+    fn binary(&mut self, op: crate::ir::op::Binary, d: Reg, a: Reg, b: Reg) {
+        self.budget = self.budget.saturating_sub(1);
+        let floats = &mut self.regs.floats;
+        if let Ok([dst, a, b]) = floats.get_disjoint_mut([d.0 as usize, a.0 as usize, b.0 as usize]) {
+            k::binary(op, dst, a, b);
+        } else if let Ok([dst, a]) = floats.get_disjoint_mut([d.0 as usize, a.0 as usize]) {
+            // Both operands are one register, as in a square.
+            k::binary(op, dst, a, a);
+        }
+    }
+
     fn instr(&mut self, instr: &Instr) {
         self.budget = self.budget.saturating_sub(1);
         match instr {
-            Instr::Unary(op, d, a) => fill!(self.floats[d], |c| k::unary(*op, &mut c, self.regs.f(*a))),
-            Instr::Binary(op, d, a, b) => {
-                fill!(self.floats[d], |c| k::binary(*op, &mut c, self.regs.f(*a), self.regs.f(*b)));
-            }
+            Instr::Unary(op, d, a) => self.unary(*op, *d, *a),
+            Instr::Binary(op, d, a, b) => self.binary(*op, *d, *a, *b),
             Instr::Compare(op, d, a, b) => {
                 fill!(self.ints[d], |c| k::compare(*op, &mut c, self.regs.f(*a), self.regs.f(*b)));
             }

@@ -44,4 +44,4 @@ pub use exponential::{exp, exp2, expm1};
 pub use hyperbolic::{cosh, sinh, tanh};
 pub use logarithm::{ln, log2, log10, logb};
 pub use power::{cbrt, pow, pow_positive, rsqrt};
-pub use rounding::{ceil, floor, floor_to_int, round, trunc, trunc_to_int};
+pub use rounding::{ceil, floor, floor_and_rest, floor_to_int, round, trunc, trunc_to_int};

@@ -8,7 +8,10 @@
 //! range of sqrt(eta² - 1), which takes some sixty hats; and instead of a table for each Fresnel term, which a textured
 //! index would need by the lane. Axes: cubic interpolation in log alpha + 6 alpha and in log(1 + cos / (0.04 alpha)), whose
 //! range is scaled to the width, because masking depends on cos / alpha near the horizon and on alpha itself elsewhere.
-//! An albedo takes about 95 ns, three times what evaluating the lobe and its base takes: a lane without a layer pays nothing.
+//! Decision (2026-11-22): cells are blended over the width first and over the cosine then, because a material of one width needs
+//! the first once a batch ([`Row`]), and the bits are the same whether it does so or not; instead of a curve over the cosine for each
+//! material, which a textured width or index would need by the lane. Nodes fill whole vectors, so that one lane's are computed
+//! side by side. AN_ALBEDO_FIGURES
 
 use super::Geometry;
 use super::distribution::{Distribution, Widths};
@@ -16,8 +19,9 @@ use super::ggx::Ggx;
 use crate::bsdf::fresnel::{Fresnel, limited};
 use crate::bsdf::power::{exp2, log2};
 use crate::bsdf::select;
+use crate::math::elementary::floor_and_rest;
 use crate::math::quadrature::{Node, gauss_legendre};
-use glam::Vec3;
+use glam::{Mat4, Vec3, Vec4};
 use std::f32::consts::LN_2;
 
 /// Nodes of the rule.
@@ -32,10 +36,89 @@ const LINEAR: f32 = 6.0;
 const BEND: f32 = 0.04;
 const LEAST: f32 = super::MIN_ALPHA;
 
+/// Vectors of four that hold a cell.
+const QUADS: usize = 2 * NODES / 4;
+/// Lanes that a row computes side by side.
+pub const BLOCK: usize = 8;
+
 /// Weights, times the distance of their nodes from the viewer's cosine, and the weights alone.
 ///
 /// Nodes are interpolated as centers of gravity, because those of almost no weight lie far away in one cell and not in the next.
-type Cell = [f32; 2 * NODES];
+type Cell = [Vec4; QUADS];
+
+/// The cells of one width for all cosines.
+pub struct Row {
+    alpha: f32,
+    cells: [Cell; COSINES],
+}
+
+/// Four cells, weighted.
+#[inline(always)]
+fn blend(cells: [&Cell; 4], weights: [f32; 4]) -> Cell {
+    let mut sum = [Vec4::ZERO; QUADS];
+    for q in 0..QUADS {
+        let near = cells[0][q] * weights[0] + cells[1][q] * weights[1];
+        sum[q] = near + (cells[2][q] * weights[2] + cells[3][q] * weights[3]);
+    }
+    sum
+}
+
+/// The cells of a block number by number, each number of all lanes together.
+#[inline(always)]
+fn transposed(cells: &[Cell; BLOCK]) -> [[f32; BLOCK]; 2 * NODES] {
+    let mut out = [[0.0; BLOCK]; 2 * NODES];
+    for first in [0, 4] {
+        for q in 0..QUADS {
+            let [a, b, c, d] = [cells[first][q], cells[first + 1][q], cells[first + 2][q], cells[first + 3][q]];
+            let four = Mat4::from_cols(a, b, c, d).transpose();
+            let rows = four.to_cols_array();
+            for k in 0..4 {
+                for l in 0..4 {
+                    out[4 * q + k][first + l] = rows[4 * k + l];
+                }
+            }
+        }
+    }
+    out
+}
+
+/// What one node adds to the integral of a Fresnel term.
+#[inline(always)]
+fn term<F: Fresnel>(fresnel: &F, cos: f32, (moment, weight): (f32, f32)) -> Vec3 {
+    let away = select(weight > 1e-9, moment / weight.max(1e-9), 0.0);
+    let at = limited(cos + away, 0.0, 1.0);
+    if F::COLORED { fresnel.color(at) * weight } else { Vec3::splat(fresnel.largest(at) * weight) }
+}
+
+impl Row {
+    /// [`FacetTable::color`] of the row's width at many cosines, by component, with the same bits; only the first component
+    /// counts where a term has no color.
+    #[inline(always)]
+    pub fn colors<F: Fresnel>(&self, fresnel: &F, cos: &[f32; BLOCK]) -> [[f32; BLOCK]; 3] {
+        // Steps of their own: the first and the last run over lanes in SIMD, the middle over the numbers of a cell.
+        let (mut places, mut weights) = ([0; BLOCK], [[0.0; BLOCK]; 4]);
+        for l in 0..BLOCK {
+            let (place, w) = cubic(cosine_axis(cos[l], self.alpha), COSINES);
+            places[l] = place;
+            (weights[0][l], weights[1][l], weights[2][l], weights[3][l]) = (w[0], w[1], w[2], w[3]);
+        }
+        let mut cells = [[Vec4::ZERO; QUADS]; BLOCK];
+        for l in 0..BLOCK {
+            let [a, b, c, d] = around(places[l], COSINES);
+            let four = [&self.cells[a], &self.cells[b], &self.cells[c], &self.cells[d]];
+            cells[l] = blend(four, [weights[0][l], weights[1][l], weights[2][l], weights[3][l]]);
+        }
+        let numbers = transposed(&cells);
+        let (mut x, mut y, mut z) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+        for k in 0..NODES {
+            for l in 0..BLOCK {
+                let more = term(fresnel, cos[l], (numbers[k][l], numbers[NODES + k][l]));
+                (x[l], y[l], z[l]) = (x[l] + more.x, y[l] + more.y, z[l] + more.z);
+            }
+        }
+        [x, y, z]
+    }
+}
 
 /// The albedo of the reflecting half of one distribution with one shadowing term.
 #[derive(Debug)]
@@ -78,7 +161,8 @@ impl FacetTable {
                     cell[k] = (rule[k].weight * (rule[k].x - f64::from(cos))) as f32;
                     cell[NODES + k] = rule[k].weight as f32;
                 }
-                cells.push(cell);
+                let quad = |q: usize| Vec4::from_slice(&cell[4 * q..4 * q + 4]);
+                cells.push([quad(0), quad(1), quad(2)]);
             }
         }
         FacetTable { cells }
@@ -91,55 +175,63 @@ impl FacetTable {
     pub fn color<F: Fresnel>(&self, fresnel: &F, alpha: f32, cos: f32) -> Vec3 {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
         let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
-        let mut sum = [0.0; 2 * NODES];
-        for (i, wi) in row.into_iter().zip(by_row) {
-            for (j, wj) in column.into_iter().zip(by_column) {
-                let (cell, weight) = (&self.cells[i * COSINES + j], wi * wj);
-                for (s, value) in sum.iter_mut().zip(cell) {
-                    *s += weight * value;
-                }
-            }
-        }
-        // Plain loops over arrays, so that the Fresnel terms of one cell are computed side by side.
-        let (mut at, mut color) = ([0.0; NODES], Vec3::ZERO);
+        let (row, [a, b, c, d]) = (around(row, WIDTHS), around(column, COSINES));
+        let (a, b) = (self.over_widths(row, by_row, a), self.over_widths(row, by_row, b));
+        let (c, d) = (self.over_widths(row, by_row, c), self.over_widths(row, by_row, d));
+        let [p, q, r] = blend([&a, &b, &c, &d], by_column);
+        let (p, q, r) = (p.to_array(), q.to_array(), r.to_array());
+        let moments = [p[0], p[1], p[2], p[3], q[0], q[1]];
+        let weights = [q[2], q[3], r[0], r[1], r[2], r[3]];
+        let mut sum = Vec3::ZERO;
         for k in 0..NODES {
-            let weight = sum[NODES + k];
-            let away = select(weight > 1e-9, sum[k] / weight, 0.0);
-            at[k] = limited(cos + away, 0.0, 1.0);
+            sum += term(fresnel, cos, (moments[k], weights[k]));
         }
-        if F::COLORED {
-            for k in 0..NODES {
-                color += fresnel.color(at[k]) * sum[NODES + k];
-            }
-        } else {
-            let mut reflected = [0.0; NODES];
-            for k in 0..NODES {
-                reflected[k] = fresnel.largest(at[k]) * sum[NODES + k];
-            }
-            color = Vec3::splat(reflected.iter().sum());
+        sum.clamp(Vec3::ZERO, Vec3::ONE)
+    }
+
+    /// The cells of one width, 1e-3..1.
+    #[inline(always)]
+    pub fn row(&self, alpha: f32) -> Row {
+        let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
+        let row = around(row, WIDTHS);
+        let mut cells = [[Vec4::ZERO; QUADS]; COSINES];
+        for (j, cell) in cells.iter_mut().enumerate() {
+            *cell = self.over_widths(row, by_row, j);
         }
-        color.clamp(Vec3::ZERO, Vec3::ONE)
+        Row { alpha, cells }
+    }
+
+    /// The cell of one cosine between four widths.
+    #[inline(always)]
+    fn over_widths(&self, row: [usize; 4], by_row: [f32; 4], j: usize) -> Cell {
+        let [a, b, c, d] = row;
+        let cells = &self.cells;
+        let four = [&cells[a * COSINES + j], &cells[b * COSINES + j], &cells[c * COSINES + j], &cells[d * COSINES + j]];
+        blend(four, by_row)
     }
 }
 
-/// The four places around `place` (0..1) of so many, and their weights.
+/// Which of so many places comes next before `place` (0..1), and the weights of it and three around it: one before, two behind.
 ///
 /// Source: Catmull and Rom 1974; at the ends a straight line goes on.
 #[inline(always)]
-fn cubic(place: f32, count: usize) -> ([usize; 4], [f32; 4]) {
+fn cubic(place: f32, count: usize) -> (u32, [f32; 4]) {
+    let last = count as u32 - 2;
     let x = (place * (count - 1) as f32).clamp(0.0, (count - 1) as f32);
-    let i = (x as usize).min(count - 2);
-    let f = x - i as f32;
+    let i = floor_and_rest(x).0.min(last);
+    let f = x - i as i32 as f32;
     let (f2, f3) = (f * f, f * f * f);
-    let mut w = [f2 - 0.5 * (f3 + f), 1.5 * f3 - 2.5 * f2 + 1.0, 2.0 * f2 - 1.5 * f3 + 0.5 * f, 0.5 * (f3 - f2)];
-    let (before, after) = (i.max(1) - 1, (i + 2).min(count - 1));
-    if i == 0 {
-        w = [0.0, w[1] + 2.0 * w[0], w[2] - w[0], w[3]];
-    }
-    if i + 2 == count {
-        w = [w[0], w[1] - w[3], w[2] + 2.0 * w[3], 0.0];
-    }
-    ([before, i, i + 1, after], w)
+    let w = [f2 - 0.5 * (f3 + f), 1.5 * f3 - 2.5 * f2 + 1.0, 2.0 * f2 - 1.5 * f3 + 0.5 * f, 0.5 * (f3 - f2)];
+    let (first, last) = (select(i == 0, w[0], 0.0), select(i == last, w[3], 0.0));
+    let inner = [w[0] - first, w[1] + 2.0 * first - last, w[2] - first + 2.0 * last, w[3] - last];
+    (i, inner)
+}
+
+/// The four places that [`cubic`] weighs.
+#[inline(always)]
+fn around(i: u32, count: usize) -> [usize; 4] {
+    let i = (i as usize).min(count - 2);
+    [i.max(1) - 1, i, i + 1, (i + 2).min(count - 1)]
 }
 
 /// The width at a place of the axis, by bisection.
@@ -355,6 +447,29 @@ mod tests {
         }
         let single = gauss_rule(&[Node { x: 0.3, weight: 0.7 }]);
         assert!((single.iter().map(|n| n.weight * n.x).sum::<f64>() - 0.21).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_row_has_the_bits_of_its_table() {
+        use crate::bsdf::fresnel::{Conductor, Dielectric};
+        use crate::bsdf::params;
+        let table = FacetTable::build::<Ggx>(Geometry::Smith);
+        let glass = Dielectric::prepare(params([1.5]), 0);
+        let metal = Conductor::prepare(params([0.16, 0.42, 1.45, 3.5, 2.4, 1.9]), 0);
+        for alpha in [1e-3, 0.0173, 0.3, 0.77, 1.0] {
+            let row = table.row(alpha);
+            for first in 0..20 {
+                let cos = std::array::from_fn(|l| (first * BLOCK + l) as f32 / 159.0);
+                let ([one, ..], three) = (row.colors(&glass, &cos), row.colors(&metal, &cos));
+                for l in 0..BLOCK {
+                    let limit = |x: f32| x.clamp(0.0, 1.0).to_bits();
+                    assert_eq!(limit(one[l]), table.color(&glass, alpha, cos[l]).x.to_bits(), "{alpha} {}", cos[l]);
+                    let color = table.color(&metal, alpha, cos[l]).to_array();
+                    let row = [three[0][l], three[1][l], three[2][l]];
+                    assert_eq!(row.map(limit), color.map(f32::to_bits), "{alpha} {}", cos[l]);
+                }
+            }
+        }
     }
 
     #[test]

@@ -25,6 +25,7 @@ pub use ggx::Ggx;
 
 use super::fresnel::{Fresnel, limited, refracted};
 use super::{Eval, Params, Scatter, Side, View, select};
+use albedo::BLOCK;
 use distribution::{Distribution, Widths};
 use glam::Vec3;
 
@@ -125,6 +126,25 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
             (_, true) => Geometry::Separable,
             _ => Geometry::Smith,
         }
+    }
+
+    /// The width that the facets have in the azimuth of a direction.
+    #[inline(always)]
+    fn width_toward(&self, w: Vec3) -> f32 {
+        let widths = self.visible.0;
+        let (x, y) = (widths.x * w.x, widths.y * w.y);
+        // Toward the normal no azimuth counts more than another.
+        let width = (x * x + y * y + widths.x * widths.y * (w.z * w.z)).sqrt();
+        limited(select(widths.x == widths.y, widths.x, width), MIN_ALPHA, 1.0)
+    }
+
+    /// What this half takes from a base, given what the reflecting half does.
+    #[inline(always)]
+    fn taken(&self, reflected: Vec3) -> f32 {
+        if !REFRACT {
+            return reflected.max_element();
+        }
+        select(self.fresnel.eta() > 0.0, 1.0 - reflected.min_element(), 0.0)
     }
 
     /// The part of Smith's term that both sides share.
@@ -252,15 +272,37 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
     /// Transmitting: up to 0.33 too much at width 1.
     #[inline(always)]
     fn top_albedo(&self, w: Vec3) -> f32 {
-        let widths = self.visible.0;
-        let (x, y) = (widths.x * w.x, widths.y * w.y);
-        // Toward the normal no azimuth counts more than another.
-        let width = (x * x + y * y + widths.x * widths.y * (w.z * w.z)).sqrt();
         let table = D::table(self.geometry());
-        let reflected = table.color(&self.fresnel, limited(width, MIN_ALPHA, 1.0), w.z.abs().min(1.0));
-        if !REFRACT {
-            return reflected.max_element();
+        self.taken(table.color(&self.fresnel, self.width_toward(w), w.z.abs().min(1.0)))
+    }
+
+    /// Where both widths are equal, the table is looked up in one of its axes only.
+    #[inline(always)]
+    fn top_albedos(&self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
+        let n = out.len();
+        let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
+        let table = D::table(self.geometry());
+        let widths = self.visible.0;
+        if widths.x == widths.y {
+            let row = table.row(self.width_toward(Vec3::Z));
+            let mut cos = [0.0; BLOCK];
+            for first in (0..n).step_by(BLOCK) {
+                let count = BLOCK.min(n - first);
+                cos[..count].copy_from_slice(&z[first..first + count]);
+                for c in &mut cos {
+                    *c = c.abs().min(1.0);
+                }
+                let [x, y, z] = row.colors(&self.fresnel, &cos);
+                for l in 0..count {
+                    let color = if F::COLORED { Vec3::new(x[l], y[l], z[l]) } else { Vec3::splat(x[l]) };
+                    out[first + l] = self.taken(color.clamp(Vec3::ZERO, Vec3::ONE));
+                }
+            }
+            return;
         }
-        select(self.fresnel.eta() > 0.0, 1.0 - reflected.min_element(), 0.0)
+        for i in 0..n {
+            let width = self.width_toward(Vec3::new(x[i], y[i], z[i]));
+            out[i] = self.taken(table.color(&self.fresnel, width, z[i].abs().min(1.0)));
+        }
     }
 }

@@ -329,5 +329,10 @@ fn rounding_is_exact() {
         assert_eq!(bits(round(x)), bits(x.round()), "round({x})");
         assert_eq!(floor_to_int(x), x.floor() as i32, "floor_to_int({x})");
         assert_eq!(trunc_to_int(x), x as i32, "trunc_to_int({x})");
+        if x.abs() < 2.0f32.powi(38) {
+            let (whole, rest) = floor_and_rest(x);
+            assert_eq!(whole, x.floor() as i64 as u32, "floor_and_rest({x})");
+            assert_eq!(rest, x - x.floor(), "floor_and_rest({x})");
+        }
     }
 }

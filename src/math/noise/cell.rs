@@ -4,7 +4,7 @@
 //! component number along. Their derivatives are zero wherever they exist. Periodic variants: [`super::wrap`] first.
 
 use super::lookup3::{hash1, hash2, hash3, hash4, hash5, to_unit};
-use crate::math::elementary::floor_to_int;
+use crate::math::elementary::floor_and_rest;
 
 /// The three components that the last word of a hash selects.
 #[inline(always)]
@@ -14,7 +14,7 @@ fn components(hash: impl Fn(u32) -> u32) -> [f32; 3] {
 
 #[inline(always)]
 fn cell(x: f32) -> u32 {
-    floor_to_int(x) as u32
+    floor_and_rest(x).0
 }
 
 /// Cell noise of one coordinate, in [0, 1].

@@ -15,7 +15,11 @@ pub struct Endless;
 impl<const N: usize> Lattice<N> for Endless {
     #[inline(always)]
     fn cell(self, cell: [i32; N]) -> [u32; N] {
-        cell.map(|c| c as u32)
+        let mut same = [0; N];
+        for axis in 0..N {
+            same[axis] = cell[axis] as u32;
+        }
+        same
     }
 }
 
@@ -29,7 +33,11 @@ impl<const N: usize> Periodic<N> {
     /// Periods are rounded down to whole numbers; those below one become one.
     #[inline(always)]
     pub fn new(period: [f32; N]) -> Self {
-        Periodic { period: period.map(|p| floor_to_int(p).max(1)) }
+        let mut whole = [0; N];
+        for axis in 0..N {
+            whole[axis] = floor_to_int(period[axis]).max(1);
+        }
+        Periodic { period: whole }
     }
 }
 

@@ -40,7 +40,12 @@ impl<const D: usize> Jet<D> {
     /// The jet times a constant.
     #[inline(always)]
     pub fn scaled(self, factor: f32) -> Self {
-        Jet { value: factor * self.value, gradient: self.gradient.map(|g| factor * g) }
+        // Loops and not `map`, which is inlined at the linker's pleasure only.
+        let mut gradient = [0.0; D];
+        for axis in 0..D {
+            gradient[axis] = factor * self.gradient[axis];
+        }
+        Jet { value: factor * self.value, gradient }
     }
 
     /// The partial derivative along `axis`, 0 where no gradient is kept.
@@ -53,11 +58,12 @@ impl<const D: usize> Jet<D> {
 /// Moves signed noise in [-1, 1] to [0, 1], as OSL's `noise` relates to `snoise`.
 #[inline(always)]
 pub fn unsigned<const D: usize>(signed: Jet<D>) -> Jet<D> {
-    Jet { value: 0.5 * (signed.value + 1.0), gradient: signed.gradient.map(|g| 0.5 * g) }
+    Jet { value: 0.5 * (signed.value + 1.0), ..signed.scaled(0.5) }
 }
 
 /// The same for the three components of a vector noise.
 #[inline(always)]
 pub fn unsigned_vector<const D: usize>(signed: [Jet<D>; 3]) -> [Jet<D>; 3] {
-    signed.map(unsigned)
+    let [a, b, c] = signed;
+    [unsigned(a), unsigned(b), unsigned(c)]
 }

@@ -1,7 +1,7 @@
 //! Perlin's gradient noise in one to four dimensions.
 //!
 //! Source: Perlin 2002, "Improving Noise", with the hash, gradients and scale factors of Open Shading Language.
-//! Domain: coordinates within the range of `i32`; beyond, cells repeat. Gives: signed noise in about [-1, 1], zero at
+//! Domain: |x| < 2^38; cells repeat after 2^32. Gives: signed noise in about [-1, 1], zero at
 //! every lattice point, and its gradient when `D` is the dimension (`D` = 0 gives none). Degenerate cases: NaN in, NaN out.
 //! Departs from source: the order of interpolation (z, x, y, w) is OSL's on machines with SIMD; another order would differ in
 //! the last bit. OSL's derivatives go through dual numbers; these are the analytic gradient, and equal up to rounding.
@@ -10,7 +10,7 @@
 
 use super::lookup3::{hash1, hash2, hash3, hash4};
 use super::{Jet, Lattice};
-use crate::math::elementary::floor_to_int;
+use crate::math::elementary::floor_and_rest;
 
 /// Scale factors that bring the noise of each dimension to about [-1, 1], as OSL has them (found by experiment there).
 const SCALE: [f32; 4] = [0.2500, 0.6616, 0.9820, 0.8344];
@@ -27,11 +27,10 @@ struct Axis {
 impl Axis {
     #[inline(always)]
     fn new(x: f32) -> Axis {
-        let cell = floor_to_int(x);
-        let t = x - cell as f32;
+        let (cell, t) = floor_and_rest(x);
         let weight = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
         let slope = 30.0 * t * t * (t * (t - 2.0) + 1.0);
-        Axis { cell, fraction: t, weight, slope }
+        Axis { cell: cell as i32, fraction: t, weight, slope }
     }
 
     /// The coordinate seen from the near (0) or far (1) side of the cell.

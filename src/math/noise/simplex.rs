@@ -1,7 +1,7 @@
 //! Simplex noise in one to four dimensions.
 //!
 //! Source: Gustavson 2005, "Simplex noise demystified", and his `sdnoise` for the gradient, with the hash, gradient tables and
-//! scale factors of Open Shading Language. Domain: coordinates within the range of `i32`. Gives: signed noise in about
+//! scale factors of Open Shading Language. Domain: |x| < 2^30. Gives: signed noise in about
 //! [-1, 1], and its gradient when `D` is the dimension (`D` = 0 gives none). Degenerate cases: NaN in, NaN out.
 //! Departs from source: corners out of reach are multiplied by zero in place of being skipped, and the order of the
 //! coordinates in four dimensions comes from counting comparisons in place of a table, so that there is no branch.
@@ -10,10 +10,15 @@
 
 use super::Jet;
 use super::lookup3::finish;
-use crate::math::elementary::floor_to_int;
+use crate::math::elementary::floor_and_rest;
 
 /// Scale factors that bring the noise of each dimension to about [-1, 1], as OSL has them (found by experiment there).
 const SCALE: [f32; 4] = [0.36, 64.0, 68.0, 54.0];
+
+#[inline(always)]
+fn cell_of(x: f32) -> i32 {
+    floor_and_rest(x).0 as i32
+}
 
 #[inline(always)]
 fn scramble(a: u32, b: u32, c: u32) -> u32 {
@@ -143,7 +148,7 @@ impl Cell<4> {
 /// Signed simplex noise of one coordinate.
 #[inline(always)]
 pub fn simplex1<const D: usize>(seed: u32, x: f32) -> Jet<D> {
-    let i = floor_to_int(x);
+    let i = cell_of(x);
     let x0 = x - i as f32;
     let slope = |i: i32| {
         let h = scramble(i as u32, seed, 0);
@@ -162,7 +167,7 @@ pub fn simplex2<const D: usize>(seed: u32, x: f32, y: f32) -> Jet<D> {
     const SKEW: f32 = 0.366_025_4;
     const BACK: f32 = 0.211_324_87;
     let s = (x + y) * SKEW;
-    let (i, j) = (floor_to_int(x + s), floor_to_int(y + s));
+    let (i, j) = (cell_of(x + s), cell_of(y + s));
     let t = i.wrapping_add(j) as f32 * BACK;
     let x0 = x - (i as f32 - t);
     let y0 = y - (j as f32 - t);
@@ -178,7 +183,7 @@ pub fn simplex3<const D: usize>(seed: u32, x: f32, y: f32, z: f32) -> Jet<D> {
     const SKEW: f32 = 1.0 / 3.0;
     const BACK: f32 = 1.0 / 6.0;
     let s = (x + y + z) * SKEW;
-    let (i, j, k) = (floor_to_int(x + s), floor_to_int(y + s), floor_to_int(z + s));
+    let (i, j, k) = (cell_of(x + s), cell_of(y + s), cell_of(z + s));
     let t = i.wrapping_add(j).wrapping_add(k) as f32 * BACK;
     let x0 = x - (i as f32 - t);
     let y0 = y - (j as f32 - t);
@@ -199,7 +204,7 @@ pub fn simplex4<const D: usize>(seed: u32, x: f32, y: f32, z: f32, w: f32) -> Je
     const SKEW: f32 = 0.309_017;
     const BACK: f32 = 0.138_196_6;
     let s = (x + y + z + w) * SKEW;
-    let cell = [x, y, z, w].map(|c| floor_to_int(c + s));
+    let cell = [cell_of(x + s), cell_of(y + s), cell_of(z + s), cell_of(w + s)];
     let [i, j, k, l] = cell;
     let t = i.wrapping_add(j).wrapping_add(k).wrapping_add(l) as f32 * BACK;
     let [x0, y0, z0, w0] = [x - (i as f32 - t), y - (j as f32 - t), z - (k as f32 - t), w - (l as f32 - t)];
