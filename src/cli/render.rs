@@ -45,7 +45,7 @@ pub struct RenderArgs {
     /// How a base is scaled under its layer: min, view or kelemen
     #[arg(long, default_value = "min")]
     layering: Layering,
-    /// Shadowing term of sheen: exact, published or ashikhmin
+    /// Shadowing term of sheen: exact, published, ashikhmin or series
     #[arg(long, default_value = "exact")]
     shadowing: Shadowing,
     /// Soften the terminator of sheen by eq. 4 of the paper: true or false

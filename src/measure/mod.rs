@@ -2,6 +2,7 @@
 
 pub mod chart;
 pub mod furnace;
+pub mod patch;
 pub mod sphere;
 pub mod statistics;
 pub mod verify;

@@ -46,8 +46,8 @@ impl AlbedoCurve {
     #[inline(always)]
     pub fn new(term: Shadowing, soft: bool, r: f32) -> Self {
         match (term, soft) {
-            (Shadowing::Exact, true) => Self::short(&ALBEDO_EXACT_SOFT, r),
-            (Shadowing::Exact, false) => Self::short(&ALBEDO_EXACT, r),
+            (Shadowing::Exact | Shadowing::Series, true) => Self::short(&ALBEDO_EXACT_SOFT, r),
+            (Shadowing::Exact | Shadowing::Series, false) => Self::short(&ALBEDO_EXACT, r),
             (Shadowing::Published, true) => Self::long(&ALBEDO_PUBLISHED_SOFT, r),
             (Shadowing::Published, false) => Self::long(&ALBEDO_PUBLISHED, r),
             (Shadowing::Ashikhmin, _) => Self::long(&ALBEDO_ASHIKHMIN, r),
@@ -109,7 +109,7 @@ fn roughness_axis(r: f32) -> f32 {
 
 /// The first N terms of a Chebyshev series by Clenshaw's recurrence.
 #[inline(always)]
-fn chebyshev<const N: usize>(c: &[f32], x: f32) -> f32 {
+pub(super) fn chebyshev<const N: usize>(c: &[f32], x: f32) -> f32 {
     let (mut b1, mut b2) = (0.0, 0.0);
     for k in (1..N).rev() {
         (b1, b2) = (2.0 * x * b1 - b2 + c[k], b1);

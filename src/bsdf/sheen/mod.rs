@@ -25,7 +25,7 @@ use super::{Eval, Params, Scatter, View, select};
 use albedo::AlbedoCurve;
 use glam::Vec3;
 use sampling::{Azimuth, Proposal};
-use shadowing::{Exact, Published, Shadowing, soften};
+use shadowing::{Exact, Published, Series, Shadowing, soften};
 
 /// Index of [`Shadowing::Exact`] as a constant parameter.
 pub const EXACT: u8 = 0;
@@ -33,6 +33,8 @@ pub const EXACT: u8 = 0;
 pub const PUBLISHED: u8 = 1;
 /// Index of [`Shadowing::Ashikhmin`] as a constant parameter.
 pub const ASHIKHMIN: u8 = 2;
+/// Index of [`Shadowing::Series`] as a constant parameter.
+pub const SERIES: u8 = 3;
 
 /// The sheen lobe with F = 1, for one shadowing term and with or without the softened terminator.
 ///
@@ -45,6 +47,7 @@ pub struct Sheen<const SHADOWING: u8, const SOFT: bool> {
     n: f32,
     exact: Exact,
     published: Published,
+    series: Series,
     albedo: AlbedoCurve,
     proposal: Proposal,
 }
@@ -54,6 +57,7 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
     pub const TERM: Shadowing = match SHADOWING {
         EXACT => Shadowing::Exact,
         PUBLISHED => Shadowing::Published,
+        SERIES => Shadowing::Series,
         _ => Shadowing::Ashikhmin,
     };
 
@@ -71,6 +75,8 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
             (EXACT, true) => 2.0 * (co + self.exact.f(co)),
             (EXACT, false) => 2.0 * self.exact.f(co),
             (PUBLISHED, _) => 4.0 * co * (1.0 + self.published.lambda(co)),
+            (SERIES, true) => 2.0 * (co + self.series.f(co)),
+            (SERIES, false) => 2.0 * self.series.f(co),
             _ => 4.0,
         }
     }
@@ -86,6 +92,8 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
             (EXACT, false) => masking + 2.0 * self.exact.f(ci) * co / ci.max(f32::MIN_POSITIVE),
             (PUBLISHED, true) => masking + 4.0 * co * soften(self.published.lambda(ci), ci),
             (PUBLISHED, false) => masking + 4.0 * co * self.published.lambda(ci),
+            (SERIES, true) => masking + 4.0 * co * soften(self.series.lambda(ci), ci),
+            (SERIES, false) => masking + 2.0 * self.series.f(ci) * co / ci.max(f32::MIN_POSITIVE),
             _ => masking * (1.0 + co * (1.0 - ci) / ci.max(f32::MIN_POSITIVE)),
         };
         let value = d / denominator.max(1e-30);
@@ -104,7 +112,8 @@ impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
         Sheen {
             n,
             exact: Exact::new(n),
-            published: Published::new(r),
+            published: if SHADOWING == PUBLISHED { Published::new(r) } else { Published::NONE },
+            series: if SHADOWING == SERIES { Series::new(n) } else { Series::NONE },
             albedo: AlbedoCurve::new(Self::TERM, SOFT, r),
             proposal: Proposal::new(Self::TERM, SOFT, r, uniform_share, plain),
         }
@@ -128,6 +137,6 @@ impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
 
     #[inline(always)]
     fn albedo(&self, cos: f32) -> f32 {
-        if SHADOWING == EXACT { self.albedo.at::<false>(cos) } else { self.albedo.at::<true>(cos) }
+        if Self::TERM.is_exact() { self.albedo.at::<false>(cos) } else { self.albedo.at::<true>(cos) }
     }
 }
