@@ -1,7 +1,9 @@
 //! `velour chart`: what each method costs on this machine, and how wrong it is.
 
-use super::{Failure, say, tell};
-use crate::measure::chart::{Effort, draw, figure::Figure, figures, table};
+use super::render::failure;
+use super::{CompileArgs, Failure, say, tell};
+use crate::measure::chart::{Budget, Effort, draw, figure::Figure, figures, scene_figure, table};
+use crate::scene::{Scene, ShaderFiles};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
@@ -9,28 +11,47 @@ use std::path::{Path, PathBuf};
 /// Arguments of `velour chart`.
 #[derive(clap::Args)]
 pub struct ChartArgs {
+    /// A scene to measure at equal time too: a file, or the text of a scene
+    scene: Option<String>,
     /// The folder to write figures and tables to; made when it is not there
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
     /// Take less than a minute
     #[arg(long)]
     quick: bool,
+    /// Folders to look for shaders and meshes in, after the scene's own; separated by colons
+    #[arg(long, value_name = "DIRS", value_delimiter = ':')]
+    path: Vec<PathBuf>,
+    #[command(flatten)]
+    compile: CompileArgs,
 }
 
 /// Measures, draws and writes.
 pub fn run(args: &ChartArgs) -> Result<(), Failure> {
     // The folder is tried first, so that no measurement is lost.
     std::fs::create_dir_all(&args.output).map_err(|error| unwritable(&args.output, &error))?;
+    let scene = match &args.scene {
+        Some(scene) => {
+            let compiler = ShaderFiles::new(args.compile.compiler()?);
+            Some(Scene::load(scene, &args.path, &compiler).map_err(failure)?)
+        }
+        None => None,
+    };
     let effort = if args.quick { Effort::quick() } else { Effort::full() };
     // indicatif draws nothing when standard error is no terminal.
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed}") {
         bar.set_style(style);
     }
-    let figures = figures(&effort, &|done, total| {
+    let progress = |done, total| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
-    });
+    };
+    let mut figures = figures(&effort, &progress).map_err(Failure::Wrong)?;
+    if let Some(scene) = &scene {
+        let budget = if args.quick { Budget::quick() } else { Budget::full() };
+        figures.push(scene_figure(scene, &budget, &progress).map_err(Failure::Wrong)?);
+    }
     bar.finish_and_clear();
     for figure in &figures {
         write_figure(&args.output, figure)?;

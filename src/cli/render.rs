@@ -1,7 +1,7 @@
 //! `velour render`: a scene in, an image out.
 
 use super::{CompileArgs, Failure, say, tell};
-use crate::closure::settings::{Shadowing, SheenSampling};
+use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::Report;
 use crate::render::{Image, Plan, Progress, Settings, output, render};
@@ -48,6 +48,9 @@ pub struct RenderArgs {
     /// Shadowing term of sheen: exact, published, ashikhmin or series
     #[arg(long, default_value = "exact")]
     shadowing: Shadowing,
+    /// How the albedo of sheen is found under an exact shadowing term: short, fit or long
+    #[arg(long, default_value = "fit")]
+    albedo: SheenAlbedo,
     /// Soften the terminator of sheen by eq. 4 of the paper: true or false
     #[arg(long, default_value_t = true, action = clap::ArgAction::Set, value_name = "BOOL")]
     softening: bool,
@@ -117,7 +120,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn failure(error: SceneError) -> Failure {
+/// A scene that cannot be loaded, as a status.
+pub(super) fn failure(error: SceneError) -> Failure {
     // Without a place the scene file itself could not be read.
     if error.place.is_none() { Failure::Usage(error.to_string()) } else { Failure::Wrong(error.to_string()) }
 }
@@ -138,6 +142,7 @@ fn settings(args: &RenderArgs) -> Settings {
             shadowing: args.shadowing,
             sheen_sampling: args.sheen_sampling,
             softening: args.softening,
+            sheen_albedo: args.albedo,
         },
         ..defaults
     }

@@ -9,15 +9,20 @@
 //! numbers are constants too, because tables built at the first use cost start-up time and a lock in the lane loop.
 
 use super::fits::{
-    ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_SOFT, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET,
+    ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_LONG, ALBEDO_EXACT_SOFT, ALBEDO_EXACT_SOFT_LONG, ALBEDO_PUBLISHED,
+    ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET,
 };
 use super::shadowing::Shadowing;
 use crate::bsdf::power::log2;
+use std::fmt;
+use std::str::FromStr;
 
 /// Coefficients of a curve in the cube root of the cosine.
 pub const CURVE: usize = 13;
 /// Coefficients that the fitted exact terms use.
 const SHORT: usize = 7;
+/// Coefficients that the cheapest evaluation uses.
+const SHORTEST: usize = 4;
 /// Coefficients in log r of the long curves.
 pub const SURFACE_COLUMNS: usize = 9;
 /// The smallest cosine of the fit; below it the curve is constant.
@@ -27,6 +32,40 @@ const MIN_T: f32 = 0.046_415_888;
 pub const MIN_FITTED_ROUGHNESS: f32 = 0.06;
 /// log2(0.06), exact to f32.
 const LOG2_MIN: f32 = -4.058_893_7;
+
+/// How the albedo of a sheen with an exact shadowing term is found; other terms have one polynomial only.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SheenAlbedo {
+    /// The first 4 x 3 terms of the default's polynomial: errs by up to 1.5e-2.
+    Short,
+    /// A polynomial of 7 x 5 terms that errs by up to 8.0e-4. The default: layers cannot show more.
+    #[default]
+    Fit,
+    /// A polynomial of 13 x 9 terms that errs by up to 2.3e-5 (softened) or 2.7e-6 (not).
+    Long,
+}
+
+impl SheenAlbedo {
+    /// All variants with the word that selects them.
+    pub const ALL: [(&'static str, SheenAlbedo); 3] =
+        [("short", SheenAlbedo::Short), ("fit", SheenAlbedo::Fit), ("long", SheenAlbedo::Long)];
+}
+
+impl FromStr for SheenAlbedo {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == text);
+        let unknown = || format!("unknown albedo evaluator \"{text}\"; choose \"short\", \"fit\" or \"long\"");
+        found.map(|&(_, method)| method).ok_or_else(unknown)
+    }
+}
+
+impl fmt::Display for SheenAlbedo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(Self::ALL.iter().find(|(_, method)| method == self).map_or("", |(name, _)| name))
+    }
+}
 
 /// Coefficients of a curve for every roughness.
 pub type Surface = [[f32; SURFACE_COLUMNS]; CURVE];
@@ -54,6 +93,18 @@ impl AlbedoCurve {
         }
     }
 
+    /// The curve of an exact term by a method, for [`AlbedoCurve::by`].
+    #[inline(always)]
+    pub fn exact(method: SheenAlbedo, soft: bool, r: f32) -> Self {
+        match (method, soft) {
+            (SheenAlbedo::Long, true) => Self::long(&ALBEDO_EXACT_SOFT_LONG, r),
+            (SheenAlbedo::Long, false) => Self::long(&ALBEDO_EXACT_LONG, r),
+            (SheenAlbedo::Fit, _) => Self::new(Shadowing::Exact, soft, r),
+            (SheenAlbedo::Short, true) => Self::shortest(&ALBEDO_EXACT_SOFT, r),
+            (SheenAlbedo::Short, false) => Self::shortest(&ALBEDO_EXACT, r),
+        }
+    }
+
     /// The curve of Ashikhmin's velvet of one width; error 2.1e-4.
     #[inline(always)]
     pub fn velvet(m: f32) -> Self {
@@ -66,6 +117,16 @@ impl AlbedoCurve {
         let s = roughness_axis(r);
         for i in 0..SHORT {
             c[i] = chebyshev::<5>(&surface[i], s);
+        }
+        AlbedoCurve { c }
+    }
+
+    #[inline(always)]
+    fn shortest(surface: &[[f32; 5]; SHORT], r: f32) -> Self {
+        let mut c = [0.0; CURVE];
+        let s = roughness_axis(r);
+        for i in 0..SHORTEST {
+            c[i] = chebyshev::<3>(&surface[i], s);
         }
         AlbedoCurve { c }
     }
@@ -84,9 +145,26 @@ impl AlbedoCurve {
     #[inline(always)]
     pub fn at<const LONG: bool>(&self, cos: f32) -> f32 {
         let t = cube_root(crate::bsdf::limited(cos, MIN_COS, 1.0));
+        if LONG { self.sum::<CURVE>(t) } else { self.sum::<SHORT>(t) }
+    }
+
+    /// The albedo of a curve of [`AlbedoCurve::exact`].
+    #[inline(always)]
+    pub fn by(&self, method: SheenAlbedo, cos: f32) -> f32 {
+        let cos = crate::bsdf::limited(cos, MIN_COS, 1.0);
+        let t = cube_root(cos);
+        match method {
+            SheenAlbedo::Short => self.sum::<SHORTEST>(t),
+            SheenAlbedo::Fit => self.sum::<SHORT>(t),
+            // A step of Newton brings the root to the last digits, which this curve is worth.
+            SheenAlbedo::Long => self.sum::<CURVE>(t - (t - cos / (t * t)) * (1.0 / 3.0)),
+        }
+    }
+
+    #[inline(always)]
+    fn sum<const TERMS: usize>(&self, t: f32) -> f32 {
         let x = (t - MIN_T) * (2.0 / (1.0 - MIN_T)) - 1.0;
-        let value = if LONG { chebyshev::<CURVE>(&self.c, x) } else { chebyshev::<SHORT>(&self.c, x) };
-        value.clamp(0.0, 1.0)
+        chebyshev::<TERMS>(&self.c, x).clamp(0.0, 1.0)
     }
 }
 

@@ -3,13 +3,12 @@
 use super::figure::{Figure, Join, Point};
 use super::lanes::{Curve, curve_lanes};
 use super::race::{Cost, Laps, Runner, race};
+use super::truth::ROUGHNESSES;
 use super::{Effort, point};
 use crate::bsdf::sheen::reference::lambda_by_area;
 use crate::bsdf::sheen::shadowing::{Exact, Published, Series};
 use std::hint::black_box;
 
-/// Roughnesses of a figure's error, from 0.06 to 1.
-pub(super) const ROUGHNESSES: [f64; 8] = [0.06, 0.1, 0.15, 0.25, 0.4, 0.5, 0.65, 1.0];
 /// Lanes that are timed.
 const LANES: usize = 128;
 /// The roughness that is timed.
@@ -77,11 +76,12 @@ fn boxed<C: Curve + 'static>(curve: C) -> Box<dyn Fn(&[f32], &mut [f32])> {
     Box::new(move |x, out| curve_lanes(curve, x, out))
 }
 
-const METHODS: [Method; 7] = [
+const METHODS: [Method; 8] = [
     ("published fit", |r| boxed(Published::new(r as f32))),
     ("exact, fitted (default)", |r| boxed(Exact::new(1.0 / r as f32))),
     ("exact, Chebyshev series", |r| boxed(Series::new(1.0 / r as f32))),
     ("closed form, 8 terms", |r| boxed(Sum::<8> { n: 1.0 / r as f32 })),
+    ("closed form, 16 terms", |r| boxed(Sum::<16> { n: 1.0 / r as f32 })),
     ("closed form, 32 terms", |r| boxed(Sum::<32> { n: 1.0 / r as f32 })),
     ("closed form, 128 terms", |r| boxed(Sum::<128> { n: 1.0 / r as f32 })),
     ("closed form, f64", |r| boxed(Doubles { n: 1.0 / r })),
@@ -125,12 +125,12 @@ fn costs(laps: Laps) -> Vec<Cost> {
 }
 
 /// Measures the figure.
-pub(super) fn figure(effort: &Effort) -> Figure {
+pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     let errors = errors(&ROUGHNESSES, &cosines(effort.cosines));
     let costs = costs(effort.laps);
     let points: Vec<Point> =
         METHODS.iter().zip(costs).zip(errors).map(|(((name, _), cost), error)| point("", name, cost, error)).collect();
-    Figure {
+    Ok(Figure {
         name: "lambda",
         title: "Lambda of the sheen: cost against error".to_owned(),
         cost: "ns a direction, 128 lanes at a time".to_owned(),
@@ -142,5 +142,5 @@ pub(super) fn figure(effort: &Effort) -> Figure {
         join: Join::Front,
         points,
     }
-    .with_front()
+    .with_front())
 }

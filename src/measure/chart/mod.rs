@@ -3,14 +3,26 @@
 //! A file a figure. Each times its methods in turns ([`race`]), finds their errors against integrals in f64 that are computed
 //! then and there, and gives a [`Figure`]; [`draw`] and [`table`] turn figures into files.
 
+mod albedo;
 mod axis;
+mod closures;
 pub mod draw;
 pub mod figure;
 mod labels;
 mod lambda;
 mod lanes;
+mod layering;
+mod precision;
 pub mod race;
+mod sampling;
+mod scene;
 pub mod table;
+mod tables;
+pub mod truth;
+mod visibility;
+mod widths;
+
+pub use scene::{Budget, scene_figure};
 
 use figure::{Figure, Point};
 use race::{Cost, Laps};
@@ -22,17 +34,26 @@ pub struct Effort {
     pub laps: Laps,
     /// How many cosines errors are looked for at.
     pub cosines: usize,
+    /// Steps of quadratures, as in [`crate::bsdf::sheen::reference::albedo`].
+    pub steps: usize,
+    /// Cells of the finest table of albedos: a power of two, at least 8.
+    pub cells: usize,
 }
 
 impl Effort {
-    /// Less than a minute.
-    pub fn quick() -> Self {
-        Effort { laps: Laps { rounds: 15, turn: 1e-3 }, cosines: 25 }
+    /// Next to nothing, for tests: costs mean little, errors are those of the quick chart at fewer places.
+    pub fn tiny() -> Self {
+        Effort { laps: Laps { rounds: 3, turn: 1e-5 }, cosines: 13, steps: 16, cells: 8 }
     }
 
-    /// Some minutes.
+    /// Some seconds.
+    pub fn quick() -> Self {
+        Effort { laps: Laps { rounds: 15, turn: 1e-3 }, cosines: 25, steps: 24, cells: 64 }
+    }
+
+    /// A minute or two.
     pub fn full() -> Self {
-        Effort { laps: Laps { rounds: 41, turn: 4e-3 }, cosines: 97 }
+        Effort { laps: Laps { rounds: 61, turn: 3e-3 }, cosines: 61, steps: 32, cells: 128 }
     }
 }
 
@@ -42,14 +63,22 @@ fn point(group: &str, method: &str, cost: Cost, error: f64) -> Point {
     Point { group: group.to_owned(), method: method.to_owned(), cost: median, spread, error, front: false }
 }
 
-/// Measures all figures; tells how many of how many are done.
-pub fn figures(effort: &Effort, progress: &dyn Fn(usize, usize)) -> Vec<Figure> {
-    let all: [fn(&Effort) -> Figure; 1] = [lambda::figure];
+/// Measures all figures that need no scene; tells how many of how many are done.
+pub fn figures(effort: &Effort, progress: &dyn Fn(usize, usize)) -> Result<Vec<Figure>, String> {
+    let all: [fn(&Effort) -> Result<Figure, String>; 7] = [
+        lambda::figure,
+        visibility::figure,
+        albedo::figure,
+        sampling::figure,
+        layering::figure,
+        widths::figure,
+        precision::figure,
+    ];
     let mut out = Vec::new();
     for (done, measure) in all.iter().enumerate() {
         progress(done, all.len());
-        out.push(measure(effort));
+        out.push(measure(effort)?);
     }
     progress(all.len(), all.len());
-    out
+    Ok(out)
 }
