@@ -106,8 +106,8 @@ impl<B: DrawingBackend> Sheet<B> {
         for point in &figure.points {
             self.marker(plot.at(point), plot.index(figure, point), point.front || figure.join == Join::Lines)?;
         }
-        let legend = self.legend(figure, &plot)?;
-        self.labels(&plot, figure, legend)?;
+        self.legend(figure, &plot)?;
+        self.labels(&plot, figure)?;
         self.root.present().map_err(text_of)
     }
 
@@ -144,15 +144,15 @@ impl<B: DrawingBackend> Sheet<B> {
         let below = self.style(12.0, INK, false).pos(Pos::new(HPos::Center, VPos::Top));
         for (value, text) in plot.x.ticks() {
             let x = left + plot.x.place(value) * (right - left);
-            let color = if text.is_empty() { RGBColor(243, 243, 243) } else { PALE };
-            self.line(&[[x, top], [x, bottom]], color, 1.0)?;
+            let end = if text.is_empty() { bottom - 4.0 } else { top };
+            self.line(&[[x, end], [x, bottom]], if text.is_empty() { INK } else { PALE }, 1.0)?;
             self.write(&text, [x, bottom + 7.0], &below)?;
         }
         let beside = self.style(12.0, INK, false).pos(Pos::new(HPos::Right, VPos::Center));
         for (value, text) in plot.y.ticks() {
             let y = bottom - plot.y.place(value) * (bottom - top);
-            let color = if text.is_empty() { RGBColor(243, 243, 243) } else { PALE };
-            self.line(&[[left, y], [right, y]], color, 1.0)?;
+            let end = if text.is_empty() { left + 4.0 } else { right };
+            self.line(&[[left, y], [end, y]], if text.is_empty() { INK } else { PALE }, 1.0)?;
             self.write(&text, [left - 7.0, y], &beside)?;
         }
         self.line(&[[left, top], [left, bottom], [right, bottom]], INK, 1.2)?;
@@ -197,22 +197,25 @@ impl<B: DrawingBackend> Sheet<B> {
         self.root.draw(&PathElement::new(outline, self.stroke(color, 1.8))).map_err(text_of)
     }
 
-    /// The names of the groups over the plot, at the right. Gives what they cover.
-    fn legend(&self, figure: &Figure, plot: &Plot) -> Result<Vec<Frame>, String> {
+    /// The names of the groups over the plot. Many lines are named at their ends instead.
+    fn legend(&self, figure: &Figure, plot: &Plot) -> Drawn {
         let style = self.style(12.0, INK, false).pos(Pos::new(HPos::Left, VPos::Center));
         let groups = figure.groups();
+        if groups.len() < 2 || groups.len() > 6 {
+            return Ok(());
+        }
         let mut x = plot.area[0];
-        for (index, group) in groups.iter().enumerate().filter(|_| groups.len() > 1) {
+        for (index, group) in groups.iter().enumerate() {
             self.marker([x + 6.0, 44.0], index, true)?;
-            self.write(group, [x + 16.0, 44.0], &style)?;
+            self.write(group, [x + 16.0, 43.0], &style)?;
             x += 34.0 + self.size(group, &style)?[0];
         }
-        Ok(Vec::new())
+        Ok(())
     }
 
-    fn labels(&self, plot: &Plot, figure: &Figure, mut taken: Vec<Frame>) -> Drawn {
+    fn labels(&self, plot: &Plot, figure: &Figure) -> Drawn {
         let around = |at: [f64; 2], d: f64| [at[0] - d, at[1] - d, at[0] + d, at[1] + d];
-        taken.extend(figure.points.iter().map(|p| around(plot.at(p), 6.0)));
+        let mut taken: Vec<Frame> = figure.points.iter().map(|p| around(plot.at(p), 6.0)).collect();
         for group in figure.groups() {
             for pair in plot.path(figure, group).windows(2) {
                 let steps = ((pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]) / 6.0).ceil().max(1.0);
