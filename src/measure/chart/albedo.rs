@@ -44,8 +44,9 @@ impl Curve for Rational {
     #[inline(always)]
     fn at(&self, c: f32) -> f32 {
         let r = self.0;
-        let above = 13.673 - 68.78018 * c + 799.08825 * r - 905.00061 * c * r + 60.28956 * c * c + 1086.96473 * r * r;
-        let below = 1.0 + 61.57746 * c + 442.78211 * r + 2597.49308 * c * r + 121.81241 * c * c + 3045.55075 * r * r;
+        let above =
+            13.673 - 68.780_18 * c + 799.088_26 * r - 905.000_6 * c * r + 60.289_56 * c * c + 1_086.964_7 * r * r;
+        let below = 1.0 + 61.577_46 * c + 442.782_1 * r + 2_597.493 * c * r + 121.812_41 * c * c + 3_045.550_8 * r * r;
         (above / below).clamp(0.0, 1.0)
     }
 }
@@ -62,11 +63,14 @@ impl Curve for Integral<'_> {
     }
 }
 
+/// Gives the albedos of many cosines for one roughness.
+type Evaluate = dyn Fn(f32, &[f32], &mut [f32]);
+
 /// A method: its model, its name, and what gives albedos of many cosines for one roughness.
 struct Method {
     model: Model,
     name: String,
-    run: Box<dyn Fn(f32, &[f32], &mut [f32])>,
+    run: Box<Evaluate>,
 }
 
 fn method(model: Model, name: impl Into<String>, run: impl Fn(f32, &[f32], &mut [f32]) + 'static) -> Method {

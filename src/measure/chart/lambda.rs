@@ -70,9 +70,11 @@ impl Curve for Doubles {
 }
 
 /// A method with what makes it for one roughness.
-type Method = (&'static str, fn(f64) -> Box<dyn Fn(&[f32], &mut [f32])>);
+type Method = (&'static str, fn(f64) -> Box<Evaluate>);
+/// Gives Lambda of many cosines.
+type Evaluate = dyn Fn(&[f32], &mut [f32]);
 
-fn boxed<C: Curve + 'static>(curve: C) -> Box<dyn Fn(&[f32], &mut [f32])> {
+fn boxed<C: Curve + 'static>(curve: C) -> Box<Evaluate> {
     Box::new(move |x, out| curve_lanes(curve, x, out))
 }
 

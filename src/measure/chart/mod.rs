@@ -63,9 +63,12 @@ fn point(group: &str, method: &str, cost: Cost, error: f64) -> Point {
     Point { group: group.to_owned(), method: method.to_owned(), cost: median, spread, error, front: false }
 }
 
+/// What measures a figure.
+type Measure = fn(&Effort) -> Result<Figure, String>;
+
 /// Measures all figures that need no scene; tells how many of how many are done.
 pub fn figures(effort: &Effort, progress: &dyn Fn(usize, usize)) -> Result<Vec<Figure>, String> {
-    let all: [fn(&Effort) -> Result<Figure, String>; 7] = [
+    let all: [Measure; 7] = [
         lambda::figure,
         visibility::figure,
         albedo::figure,
