@@ -3,7 +3,7 @@
 //! Outputs are separate slices and inputs are borrowed apart from them, which lets the compiler prove that no store changes
 //! an input, and turn the loops into SIMD. No target enables fused multiply-add, so every target gives the same bits.
 
-use super::settings::{Layering, SheenAlbedo};
+use super::settings::Layering;
 use crate::bsdf::sheen::albedo::AlbedoCurve;
 use crate::bsdf::{MAX_PARAMS, Scatter, Side, View, select};
 use crate::math::frame::Frame;
@@ -255,10 +255,10 @@ pub fn albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut 
 
 /// The albedo of a sheen of one roughness by a method that is not the default.
 #[multiversion(targets("x86_64+avx2"))]
-pub fn sheen_albedo_lanes(method: SheenAlbedo, curve: AlbedoCurve, cos: &[f32], out: &mut [f32]) {
+pub fn sheen_albedo_lanes<const METHOD: u8>(curve: AlbedoCurve, cos: &[f32], out: &mut [f32]) {
     let cos = &cos[..out.len()];
     for i in 0..out.len() {
-        out[i] = curve.by(method, cos[i].abs().min(1.0));
+        out[i] = curve.by::<METHOD>(cos[i].abs().min(1.0));
     }
 }
 

@@ -13,7 +13,7 @@ use super::kinds::with_source;
 use super::media::Media;
 use super::settings::{Layering, SheenAlbedo};
 use super::surfaces::{NONE, Surface, Surfaces, Values};
-use crate::bsdf::sheen::albedo::AlbedoCurve;
+use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD};
 use crate::bsdf::specular::{reflection, refraction};
 use crate::bsdf::{GAUSS, between};
 use crate::math::columns::Column3;
@@ -364,9 +364,13 @@ fn sheen_albedo(surfaces: &Surfaces, surface: &Surface, soft: bool, cos: &[f32],
     let method = surfaces.sheen_albedo;
     let curve = |lane| AlbedoCurve::exact(method, soft, surfaces.param(surface, 0, lane));
     if let Values::Uniform(_) = surface.params {
-        return sheen_albedo_lanes(method, curve(0), cos, out);
+        return match method {
+            SheenAlbedo::Short => sheen_albedo_lanes::<SHORT_METHOD>(curve(0), cos, out),
+            SheenAlbedo::Fit => sheen_albedo_lanes::<FIT_METHOD>(curve(0), cos, out),
+            SheenAlbedo::Long => sheen_albedo_lanes::<LONG_METHOD>(curve(0), cos, out),
+        };
     }
     for lane in 0..out.len() {
-        out[lane] = curve(lane).by(method, cos[lane].abs().min(1.0));
+        out[lane] = curve(lane).by_method(method, cos[lane].abs().min(1.0));
     }
 }

@@ -23,7 +23,7 @@ const ALBEDO_COSTS: [(SheenAlbedo, f64); 3] =
     [(SheenAlbedo::Short, 1.0), (SheenAlbedo::Fit, 1.3), (SheenAlbedo::Long, 2.0)];
 
 /// Roughnesses at which errors are looked for.
-const ROUGHNESSES: [f64; 7] = [0.06, 0.085, 0.13, 0.22, 0.4, 0.7, 1.0];
+const ROUGHNESSES: [f64; 6] = [0.06, 0.09, 0.16, 0.3, 0.6, 1.0];
 
 /// What a user has asked for by name, which wins over any tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -163,8 +163,8 @@ fn albedo_errors(term: Shadowing, soft: bool) -> [f64; 3] {
         Shadowing::Published => Model::Published,
         Shadowing::Ashikhmin => Model::Ashikhmin,
     };
-    let cosines = cosines(15);
-    let truth = albedos(model, soft, &ROUGHNESSES, &cosines, 24);
+    let cosines = cosines(12);
+    let truth = albedos(model, soft, &ROUGHNESSES, &cosines, 20);
     let mut worst = [0.0f64; 3];
     for (row, r) in truth.iter().zip(ROUGHNESSES) {
         for (worst, (method, _)) in worst.iter_mut().zip(ALBEDO_COSTS) {
@@ -172,7 +172,7 @@ fn albedo_errors(term: Shadowing, soft: bool) -> [f64; 3] {
             let other = AlbedoCurve::new(term, soft, r as f32);
             for (truth, &cos) in row.iter().zip(&cosines) {
                 let cos = cos as f32;
-                let value = if term.is_exact() { exact.by(method, cos) } else { other.at::<true>(cos) };
+                let value = if term.is_exact() { exact.by_method(method, cos) } else { other.at::<true>(cos) };
                 *worst = worst.max((f64::from(value) - truth.min(1.0)).abs());
             }
         }

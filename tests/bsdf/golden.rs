@@ -330,7 +330,7 @@ fn long_error(soft: bool, roughnesses: &[f64]) -> f64 {
         let curve = AlbedoCurve::exact(SheenAlbedo::Long, soft, r as f32);
         for c in [1e-4, 4e-4, 2e-3, 0.03, 0.17, 0.47, 0.53, 0.86, 1.0] {
             let expected = reference::albedo(Model::Exact, soft, c, r, 32);
-            worst = worst.max((f64::from(curve.by(SheenAlbedo::Long, c as f32)) - expected).abs());
+            worst = worst.max((f64::from(curve.by_method(SheenAlbedo::Long, c as f32)) - expected).abs());
         }
     }
     worst

@@ -45,6 +45,13 @@ pub enum SheenAlbedo {
     Long,
 }
 
+/// [`SheenAlbedo::Short`] as a constant parameter.
+pub const SHORT_METHOD: u8 = 0;
+/// [`SheenAlbedo::Fit`] as a constant parameter.
+pub const FIT_METHOD: u8 = 1;
+/// [`SheenAlbedo::Long`] as a constant parameter.
+pub const LONG_METHOD: u8 = 2;
+
 impl SheenAlbedo {
     /// All variants with the word that selects them.
     pub const ALL: [(&'static str, SheenAlbedo); 3] =
@@ -93,7 +100,7 @@ impl AlbedoCurve {
         }
     }
 
-    /// The curve of an exact term by a method, for [`AlbedoCurve::by`].
+    /// The curve of an exact term by a method, for [`AlbedoCurve::by`] with the same method.
     #[inline(always)]
     pub fn exact(method: SheenAlbedo, soft: bool, r: f32) -> Self {
         match (method, soft) {
@@ -148,16 +155,25 @@ impl AlbedoCurve {
         if LONG { self.sum::<CURVE>(t) } else { self.sum::<SHORT>(t) }
     }
 
-    /// The albedo of a curve of [`AlbedoCurve::exact`].
+    /// The albedo of a curve of [`AlbedoCurve::exact`]; a constant method lets lane loops become SIMD code.
     #[inline(always)]
-    pub fn by(&self, method: SheenAlbedo, cos: f32) -> f32 {
+    pub fn by<const METHOD: u8>(&self, cos: f32) -> f32 {
         let cos = crate::bsdf::limited(cos, MIN_COS, 1.0);
         let t = cube_root(cos);
-        match method {
-            SheenAlbedo::Short => self.sum::<SHORTEST>(t),
-            SheenAlbedo::Fit => self.sum::<SHORT>(t),
+        match METHOD {
+            SHORT_METHOD => self.sum::<SHORTEST>(t),
+            FIT_METHOD => self.sum::<SHORT>(t),
             // A step of Newton brings the root to the last digits, which this curve is worth.
-            SheenAlbedo::Long => self.sum::<CURVE>(t - (t - cos / (t * t)) * (1.0 / 3.0)),
+            _ => self.sum::<CURVE>(t - (t - cos / (t * t)) * (1.0 / 3.0)),
+        }
+    }
+
+    /// The same for a method that is known only now.
+    pub fn by_method(&self, method: SheenAlbedo, cos: f32) -> f32 {
+        match method {
+            SheenAlbedo::Short => self.by::<SHORT_METHOD>(cos),
+            SheenAlbedo::Fit => self.by::<FIT_METHOD>(cos),
+            SheenAlbedo::Long => self.by::<LONG_METHOD>(cos),
         }
     }
 
@@ -174,7 +190,7 @@ impl AlbedoCurve {
 /// changes an albedo by at most 3e-5.
 /// The library's function is exact to the last bit and costs two divisions in f64; the curve needs neither.
 #[inline(always)]
-fn cube_root(x: f32) -> f32 {
+pub(crate) fn cube_root(x: f32) -> f32 {
     let y = f32::from_bits(x.to_bits() / 3 + 709_958_130);
     let cube = y * y * y;
     y * (cube + 2.0 * x) / (2.0 * cube + x)

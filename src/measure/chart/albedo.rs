@@ -6,7 +6,7 @@ use super::race::{Laps, Runner, race};
 use super::tables::{Axes, Interpolation, Table, nodes};
 use super::truth::{ROUGHNESSES, albedos, cosines, viewer};
 use super::{Effort, point};
-use crate::bsdf::sheen::albedo::{AlbedoCurve, SheenAlbedo};
+use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD, SheenAlbedo};
 use crate::bsdf::sheen::reference::Model;
 use crate::bsdf::sheen::{EXACT, Sheen};
 use crate::bsdf::{Scatter, params};
@@ -17,12 +17,12 @@ use std::sync::Arc;
 const LANES: usize = 128;
 
 #[derive(Clone, Copy)]
-struct Polynomial(AlbedoCurve, SheenAlbedo);
+struct Polynomial<const METHOD: u8>(AlbedoCurve);
 
-impl Curve for Polynomial {
+impl<const METHOD: u8> Curve for Polynomial<METHOD> {
     #[inline(always)]
     fn at(&self, cos: f32) -> f32 {
-        self.0.by(self.1, cos)
+        self.0.by::<METHOD>(cos)
     }
 }
 
@@ -80,16 +80,16 @@ fn method(model: Model, name: impl Into<String>, run: impl Fn(f32, &[f32], &mut 
 /// Everything that can tell an albedo.
 fn methods(effort: &Effort) -> Vec<Method> {
     let mut list = Vec::new();
-    for (kind, name) in [
-        (SheenAlbedo::Short, "polynomial 4 x 3 (short)"),
-        (SheenAlbedo::Fit, "polynomial 7 x 5 (default)"),
-        (SheenAlbedo::Long, "polynomial 13 x 9 (long)"),
-    ] {
-        list.push(method(Model::ExactFit, name, move |r, x, out| {
-            curve_lanes(Polynomial(AlbedoCurve::exact(kind, true, r), kind), x, out);
-        }));
-    }
-    let mut table = Table::new(effort.cells, Axes::Bent, 16);
+    list.push(method(Model::ExactFit, "polynomial 4 x 3 (short)", |r, x, out| {
+        curve_lanes(Polynomial::<SHORT_METHOD>(AlbedoCurve::exact(SheenAlbedo::Short, true, r)), x, out);
+    }));
+    list.push(method(Model::ExactFit, "polynomial 7 x 5 (default)", |r, x, out| {
+        curve_lanes(Polynomial::<FIT_METHOD>(AlbedoCurve::exact(SheenAlbedo::Fit, true, r)), x, out);
+    }));
+    list.push(method(Model::ExactFit, "polynomial 13 x 9 (long)", |r, x, out| {
+        curve_lanes(Polynomial::<LONG_METHOD>(AlbedoCurve::exact(SheenAlbedo::Long, true, r)), x, out);
+    }));
+    let mut table = Table::new(effort.cells, Axes::Bent, effort.steps);
     let mut cells = effort.cells;
     while cells >= 8 {
         let shared = Arc::new(table.clone());
@@ -106,7 +106,7 @@ fn methods(effort: &Effort) -> Vec<Method> {
         table = table.halved();
         cells /= 2;
     }
-    let plain = Table::new(32, Axes::Plain, 16);
+    let plain = Table::new(32, Axes::Plain, effort.steps);
     list.push(method(Model::ExactFit, "table 32, linear, plain axes", move |r, x, out| {
         curve_lanes(Lookup(&plain, plain.row(r), Interpolation::Bilinear), x, out);
     }));

@@ -26,6 +26,11 @@ const OVERSAMPLING: u32 = 2;
 /// What the plot leaves free: left, top, right, bottom.
 const MARGINS: [f64; 4] = [88.0, 54.0, 24.0, 64.0];
 
+/// The room at the right for the names of many lines.
+const KEY: f64 = 262.0;
+/// More groups than this are named at the right.
+const MANY: usize = 6;
+
 const INK: RGBColor = RGBColor(40, 40, 40);
 const PALE: RGBColor = RGBColor(228, 228, 228);
 /// Colors that eyes of all kinds tell apart. Source: Okabe and Ito 2008.
@@ -201,14 +206,31 @@ impl<B: DrawingBackend> Sheet<B> {
     fn legend(&self, figure: &Figure, plot: &Plot) -> Drawn {
         let style = self.style(12.0, INK, false).pos(Pos::new(HPos::Left, VPos::Center));
         let groups = figure.groups();
-        if groups.len() < 2 || groups.len() > 6 {
+        if groups.len() > MANY {
+            return self.key(figure, plot);
+        }
+        if groups.len() < 2 {
             return Ok(());
         }
         let mut x = plot.area[0];
         for (index, group) in groups.iter().enumerate() {
             self.marker([x + 6.0, 44.0], index, true)?;
-            self.write(group, [x + 16.0, 43.0], &style)?;
+            self.write(group, [x + 16.0, 45.0], &style)?;
             x += 34.0 + self.size(group, &style)?[0];
+        }
+        Ok(())
+    }
+
+    /// The names of many lines at the right of the plot, in the order in which the lines end.
+    fn key(&self, figure: &Figure, plot: &Plot) -> Drawn {
+        let style = self.style(11.5, INK, false).pos(Pos::new(HPos::Left, VPos::Center));
+        let mut ends: Vec<&Point> = figure.points.iter().filter(|p| !p.method.is_empty()).collect();
+        ends.sort_by(|a, b| (b.error * b.cost).total_cmp(&(a.error * a.cost)));
+        let [_, top, right, _] = plot.area;
+        for (row, point) in ends.into_iter().enumerate() {
+            let y = top + 12.0 + 22.0 * row as f64;
+            self.marker([right + 18.0, y], plot.index(figure, point), true)?;
+            self.write(&point.method, [right + 30.0, y + 1.0], &style)?;
         }
         Ok(())
     }
@@ -225,6 +247,9 @@ impl<B: DrawingBackend> Sheet<B> {
                     taken.push(around(at, 2.0));
                 }
             }
+        }
+        if figure.groups().len() > MANY {
+            return Ok(());
         }
         let mut layout = Layout::new(plot.area, taken);
         for point in figure.points.iter().filter(|p| !p.method.is_empty()) {
@@ -260,7 +285,8 @@ struct Plot {
 
 impl Plot {
     fn new(figure: &Figure) -> Self {
-        let area = [MARGINS[0], MARGINS[1], SIZE[0] - MARGINS[2], SIZE[1] - MARGINS[3]];
+        let right = if figure.groups().len() > MANY { KEY } else { MARGINS[2] };
+        let area = [MARGINS[0], MARGINS[1], SIZE[0] - right, SIZE[1] - MARGINS[3]];
         let x = Axis::around(figure.points.iter().map(|p| p.cost));
         let y = Axis::around(figure.points.iter().map(|p| p.error));
         Plot { area, x, y }

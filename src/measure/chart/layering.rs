@@ -4,7 +4,7 @@ use super::figure::{Figure, Join, Point};
 use super::race::race;
 use super::truth::ROUGHNESSES;
 use super::{Effort, closures, point};
-use crate::bsdf::sheen::albedo::{AlbedoCurve, SheenAlbedo};
+use crate::bsdf::sheen::albedo::{AlbedoCurve, LONG_METHOD, SheenAlbedo};
 use crate::bsdf::sheen::reference::average;
 use crate::closure::{Layering, Settings};
 use crate::math::quadrature::gauss_legendre;
@@ -23,7 +23,7 @@ fn worst(rule: Layering) -> Worst {
     let mut out = Worst::default();
     for r in ROUGHNESSES {
         let curve = AlbedoCurve::exact(SheenAlbedo::Long, true, r as f32);
-        let albedo = |cos: f64| f64::from(curve.by(SheenAlbedo::Long, cos as f32));
+        let albedo = |cos: f64| f64::from(curve.by::<LONG_METHOD>(cos as f32));
         let mean = average(albedo);
         let scale = |i: f64, o: f64| {
             let (pass_i, pass_o) = (1.0 - albedo(i), 1.0 - albedo(o));

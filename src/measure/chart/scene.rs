@@ -6,6 +6,7 @@ use super::table::short;
 use crate::closure::{Layering, settings::SheenSampling};
 use crate::render::{Image, LightStrategy, Settings, Silent, render};
 use crate::scene::Scene;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// How much of a scene is rendered.
@@ -31,12 +32,12 @@ impl Budget {
 
     /// Half a minute.
     pub fn quick() -> Self {
-        Budget { size: [120, 48], reference: 2048, most: 64, images: 3, repeats: 1 }
+        Budget { size: [120, 48], reference: 2048, most: 32, images: 3, repeats: 3 }
     }
 
     /// Some minutes.
     pub fn full() -> Self {
-        Budget { size: [160, 64], reference: 8192, most: 256, images: 4, repeats: 3 }
+        Budget { size: [160, 64], reference: 8192, most: 128, images: 4, repeats: 5 }
     }
 }
 
@@ -73,31 +74,49 @@ const REFERENCE_SEED: u32 = 77_777;
 pub fn scene_figure(scene: &Scene, budget: &Budget, progress: &dyn Fn(usize, usize)) -> Result<Figure, String> {
     let base = Settings::default().with_options(&scene.options);
     let base = Settings { width: budget.size[0], height: budget.size[1], ..base };
-    let total = VARIANTS.len() + 3;
-    let mut references: Vec<(&str, Image)> = Vec::new();
-    let mut points: Vec<Point> = Vec::new();
-    for (done, (group, name, change)) in VARIANTS.iter().enumerate() {
-        progress(done + references.len(), total);
+    let settings = VARIANTS.map(|(_, _, change)| {
         let mut settings = base.clone();
         change(&mut settings);
-        if !references.iter().any(|(g, _)| g == group) {
-            let converged = Settings { samples: budget.reference, seed: REFERENCE_SEED, ..settings.clone() };
-            references.push((*group, render(scene, &converged, &Silent)?));
+        settings
+    });
+    let total = (budget.images * budget.repeats) as usize + 3;
+    let references = references(scene, &settings, budget, &|done| progress(done, total))?;
+    let mut points: Vec<Vec<Point>> = vec![Vec::new(); VARIANTS.len()];
+    for image in 0..budget.images {
+        let samples = (budget.most >> (2 * (budget.images - 1 - image))).max(1);
+        let mut seen = vec![(0.0, Vec::new()); VARIANTS.len()];
+        // The settings take turns, so that a slow moment of the machine strikes all of them.
+        for repeat in 0..budget.repeats {
+            progress((image * budget.repeats + repeat) as usize + 3, total);
+            for ((settings, reference), (error, times)) in settings.iter().zip(&references).zip(&mut seen) {
+                let settings = Settings { samples, seed: repeat, ..settings.clone() };
+                let start = Instant::now();
+                let made = render(scene, &settings, &Silent)?;
+                times.push(start.elapsed().as_secs_f64());
+                *error += difference(&made, reference) / f64::from(budget.repeats);
+            }
         }
-        let Some((_, reference)) = references.iter().find(|(g, _)| g == group) else { continue };
-        points.extend(line(scene, &settings, reference, budget, group, name)?);
+        for (((_, name, _), (error, times)), points) in VARIANTS.iter().zip(seen).zip(&mut points) {
+            let cost = summary(times);
+            let last = image + 1 == budget.images;
+            let efficiency = short(1.0 / (error * cost.median));
+            let label = if last { format!("{name}: {efficiency}") } else { String::new() };
+            // A line is a setting, so the group that gives it its color is the setting.
+            points.push(super::point(name, &label, cost, error));
+        }
     }
+    let points: Vec<Point> = points.into_iter().flatten().collect();
     progress(total, total);
     Ok(Figure {
         name: "scene",
         title: format!("{}: error of the image against time", scene.name),
-        cost: "seconds to render, threads of this machine".to_owned(),
+        cost: "seconds to render; at the right: 1 / (error x seconds)".to_owned(),
         error: "mean squared error of the image".to_owned(),
         meaning: format!(
             "Error: the mean squared error over pixels and channels ({} x {}) against an image of {} samples a pixel, another \
              seed and the same layering rule. One line a setting; the defaults are `ltc` sheen, light and scattering \
-             samples combined, roulette from bounce 5, batches of 128 lanes. eff is the efficiency 1 / (error x seconds) \
-             of the last image of a line.\n\n{}",
+             samples combined, roulette from bounce 5, batches of 128 lanes. The number after a name is the \
+             efficiency 1 / (error x seconds) of the last image of its line.\n\n{}",
             base.width,
             base.height,
             budget.reference,
@@ -108,34 +127,22 @@ pub fn scene_figure(scene: &Scene, budget: &Budget, progress: &dyn Fn(usize, usi
     })
 }
 
-/// The images of one setting, from few samples to many.
-fn line(
+/// The converged image that belongs to each setting; settings of one group share it.
+fn references(
     scene: &Scene,
-    settings: &Settings,
-    reference: &Image,
+    settings: &[Settings],
     budget: &Budget,
-    group: &str,
-    name: &str,
-) -> Result<Vec<Point>, String> {
+    progress: &dyn Fn(usize),
+) -> Result<Vec<Arc<Image>>, String> {
+    let mut made: Vec<(&str, Arc<Image>)> = Vec::new();
     let mut out = Vec::new();
-    for step in (0..budget.images).rev() {
-        let samples = (budget.most >> (2 * step)).max(1);
-        let (mut error, mut times) = (0.0, Vec::new());
-        for repeat in 0..budget.repeats {
-            let settings = Settings { samples, seed: repeat, ..settings.clone() };
-            let start = Instant::now();
-            let image = render(scene, &settings, &Silent)?;
-            times.push(start.elapsed().as_secs_f64());
-            error += difference(&image, reference) / f64::from(budget.repeats);
+    for (settings, (group, _, _)) in settings.iter().zip(&VARIANTS) {
+        if !made.iter().any(|(g, _)| g == group) {
+            progress(made.len());
+            let converged = Settings { samples: budget.reference, seed: REFERENCE_SEED, ..settings.clone() };
+            made.push((group, Arc::new(render(scene, &converged, &Silent)?)));
         }
-        let cost = summary(times);
-        let last = step == 0;
-        let efficiency = 1.0 / (error * cost.median);
-        let method = if last { format!("{name}, eff {}", short(efficiency)) } else { String::new() };
-        // A line is a setting, so the group that gives it its color is the setting.
-        let mut point = super::point(name, &method, cost, error);
-        point.front = last && group == EXACT;
-        out.push(point);
+        out.extend(made.iter().find(|(g, _)| g == group).map(|(_, image)| Arc::clone(image)));
     }
     Ok(out)
 }

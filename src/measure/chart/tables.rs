@@ -1,6 +1,7 @@
 //! Tables of the albedo, to compare polynomials with: by resolution, axes and interpolation.
 
 use super::truth::albedos;
+use crate::bsdf::sheen::albedo::cube_root;
 use crate::bsdf::sheen::reference::Model;
 use crate::math::quadrature::gauss_legendre;
 
@@ -68,7 +69,7 @@ impl Table {
     pub fn at(&self, cos: f32, row: f32, interpolation: Interpolation) -> f32 {
         const LEAST_T: f32 = 0.046_415_888;
         let place = match self.axes {
-            Axes::Bent => (crate::math::elementary::cbrt(cos.max(LEAST_COS as f32)) - LEAST_T) / (1.0 - LEAST_T),
+            Axes::Bent => (cube_root(cos.max(LEAST_COS as f32)) - LEAST_T) / (1.0 - LEAST_T),
             Axes::Plain => cos,
         };
         let x = place.clamp(0.0, 1.0) * (self.across - 1) as f32;
