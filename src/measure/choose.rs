@@ -16,14 +16,14 @@ use std::fmt;
 /// Cost of a sheen lobe by its shadowing term, ns to evaluate a direction in batches of 128 lanes, softened. One core of a
 /// 2-core AMD EPYC with AVX2, the figure `visibility` of `velour chart`.
 const SHADOWING_COSTS: [(Shadowing, f64); 4] =
-    [(Shadowing::Ashikhmin, 5.0), (Shadowing::Exact, 6.0), (Shadowing::Series, 9.0), (Shadowing::Published, 12.0)];
+    [(Shadowing::Ashikhmin, 8.7), (Shadowing::Exact, 9.9), (Shadowing::Series, 11.2), (Shadowing::Published, 20.0)];
 
 /// Cost of an albedo, ns a direction, as the figure `albedo` of `velour chart` has it on the same machine.
 const ALBEDO_COSTS: [(SheenAlbedo, f64); 3] =
-    [(SheenAlbedo::Short, 1.0), (SheenAlbedo::Fit, 1.3), (SheenAlbedo::Long, 2.0)];
+    [(SheenAlbedo::Short, 1.3), (SheenAlbedo::Fit, 1.9), (SheenAlbedo::Long, 4.3)];
 
 /// Roughnesses at which errors are looked for.
-const ROUGHNESSES: [f64; 6] = [0.06, 0.09, 0.16, 0.3, 0.6, 1.0];
+const ROUGHNESSES: [f64; 5] = [0.06, 0.1, 0.2, 0.45, 1.0];
 
 /// What a user has asked for by name, which wins over any tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -164,7 +164,7 @@ fn albedo_errors(term: Shadowing, soft: bool) -> [f64; 3] {
         Shadowing::Ashikhmin => Model::Ashikhmin,
     };
     let cosines = cosines(12);
-    let truth = albedos(model, soft, &ROUGHNESSES, &cosines, 20);
+    let truth = albedos(model, soft, &ROUGHNESSES, &cosines, 24);
     let mut worst = [0.0f64; 3];
     for (row, r) in truth.iter().zip(ROUGHNESSES) {
         for (worst, (method, _)) in worst.iter_mut().zip(ALBEDO_COSTS) {

@@ -7,6 +7,9 @@
 //! a lane loop evaluates them without gathers (error 6.8e-4 and 8.0e-4), instead of 32 x 16 tables (7e-4). The published
 //! fit and Ashikhmin's visibility need degree 12 x 8 for the kink of the one at cos = 0.5 and the gain of the other; their
 //! numbers are constants too, because tables built at the first use cost start-up time and a lock in the lane loop.
+//!
+//! Decision (2026-11-22): how exact the albedo is, is a setting of a render, because it is a matter of accuracy and not of looks,
+//! instead of a keyword of the closure, by which flattening would have to tell lanes apart.
 
 use super::fits::{
     ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_LONG, ALBEDO_EXACT_SOFT, ALBEDO_EXACT_SOFT_LONG, ALBEDO_PUBLISHED,
