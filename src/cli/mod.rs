@@ -1,5 +1,6 @@
 //! The command line: arguments, subcommands, messages to people. All printing and all exit codes are here.
 
+mod chart;
 mod check;
 mod info;
 mod info_file;
@@ -39,6 +40,8 @@ enum Command {
     Tree(tree::TreeArgs),
     /// Verify that closures or shaders keep energy, sample what they say, and stay finite
     Verify(verify::VerifyArgs),
+    /// Measure cost and error of every method on this machine, and draw them
+    Chart(chart::ChartArgs),
     /// List closures and functions, or what a shader declares
     Info(info::InfoArgs),
 }
@@ -104,6 +107,7 @@ pub fn run() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Tree(args) => tree::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Chart(args) => chart::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match result {

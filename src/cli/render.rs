@@ -1,9 +1,10 @@
 //! `velour render`: a scene in, an image out.
 
 use super::{CompileArgs, Failure, say, tell};
-use crate::closure::settings::{Shadowing, SheenSampling};
+use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::Report;
+use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::{Explanation, Image, Progress, Settings, output, render};
 use crate::scene::{Scene, SceneError, ShaderFiles};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -51,9 +52,15 @@ pub struct RenderArgs {
     /// How a base is scaled under its layer: min, view or kelemen
     #[arg(long, default_value = "min")]
     layering: Layering,
-    /// Shadowing term of sheen: exact, published or ashikhmin
-    #[arg(long, default_value = "exact")]
-    shadowing: Shadowing,
+    /// Shadowing term of sheen: exact, published, ashikhmin or series [default: exact]
+    #[arg(long)]
+    shadowing: Option<Shadowing>,
+    /// How the albedo of sheen is found under an exact shadowing term: short, fit or long [default: fit]
+    #[arg(long)]
+    albedo: Option<SheenAlbedo>,
+    /// Take the cheapest methods whose measured error is at most this; --shadowing and --albedo win over it
+    #[arg(long, value_name = "ERROR", value_parser = tolerance)]
+    tolerance: Option<f64>,
     /// Soften the terminator of sheen by eq. 4 of the paper: true or false
     #[arg(long, default_value_t = true, action = clap::ArgAction::Set, value_name = "BOOL")]
     softening: bool,
@@ -110,7 +117,10 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     for warning in &scene.warnings {
         tell(&format!("{warning}\n"));
     }
-    let settings = settings(args).with_options(&scene.options);
+    let mut settings = settings(args).with_options(&scene.options);
+    if let Some(tolerance) = args.tolerance {
+        settings.closure = chosen(args, tolerance, settings.closure);
+    }
     if args.explain {
         say(&Explanation::new(&scene, &settings).to_string());
     }
@@ -123,7 +133,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn failure(error: SceneError) -> Failure {
+/// A scene that cannot be loaded, as a status.
+pub(super) fn failure(error: SceneError) -> Failure {
     // Without a place the scene file itself could not be read.
     if error.place.is_none() { Failure::Usage(error.to_string()) } else { Failure::Wrong(error.to_string()) }
 }
@@ -144,12 +155,35 @@ fn settings(args: &RenderArgs) -> Settings {
         alpha: args.alpha,
         closure: closure::Settings {
             layering: args.layering,
-            shadowing: args.shadowing,
+            shadowing: args.shadowing.unwrap_or_default(),
             sheen_sampling: args.sheen_sampling,
             softening: args.softening,
+            sheen_albedo: args.albedo.unwrap_or_default(),
         },
         ..defaults
     }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err("a tolerance is a number above 0".to_owned()) }
+}
+
+/// The closures' settings for a tolerance; says what was asked for against it, and what no method reaches.
+fn chosen(args: &RenderArgs, tolerance: f64, closure: closure::Settings) -> closure::Settings {
+    let choice = choose(tolerance, Asked { shadowing: args.shadowing, albedo: args.albedo }, closure);
+    if args.explain {
+        say(&choice.to_string());
+    }
+    for pick in choice.missed() {
+        let Candidate { method, error, .. } = &pick.taken;
+        let why = if pick.reason == Reason::Asked { "was asked for" } else { "is the most exact" };
+        tell(&format!(
+            "warning: {}: {method} {why}, with an error of {error:.1e} above the tolerance of {tolerance:e}\n",
+            pick.place
+        ));
+    }
+    choice.closure
 }
 
 /// Passes on what shaders said.

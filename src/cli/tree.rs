@@ -29,7 +29,7 @@ pub struct TreeArgs {
     /// How a base is scaled under its layer: min, view or kelemen
     #[arg(long, default_value = "min")]
     layering: Layering,
-    /// Shadowing term of sheen: exact, published or ashikhmin
+    /// Shadowing term of sheen: exact, published, ashikhmin or series
     #[arg(long, default_value = "exact")]
     shadowing: Shadowing,
     /// Show the program as well

@@ -37,7 +37,7 @@ pub struct VerifyArgs {
     /// How a base is scaled under its layer where the shader does not say: min, view or kelemen
     #[arg(long, default_value = "min")]
     layering: Layering,
-    /// Shadowing term of sheen where the shader does not say: exact, published or ashikhmin
+    /// Shadowing term of sheen where the shader does not say: exact, published, ashikhmin or series
     #[arg(long, default_value = "exact")]
     shadowing: Shadowing,
     #[command(flatten)]

@@ -4,6 +4,7 @@
 //! an input, and turn the loops into SIMD. No target enables fused multiply-add, so every target gives the same bits.
 
 use super::settings::Layering;
+use crate::bsdf::sheen::albedo::AlbedoCurve;
 use crate::bsdf::{MAX_PARAMS, Scatter, Side, View, select};
 use crate::math::frame::Frame;
 use glam::Vec3;
@@ -264,6 +265,15 @@ pub fn albedo_lanes<M: Scatter, S: Source<M>>(source: S, cos: &[f32], out: &mut 
     let (cos, source) = (&cos[..n], source.narrow(n));
     for i in 0..n {
         out[i] = source.at(i).albedo(cos[i].abs().min(1.0));
+    }
+}
+
+/// The albedo of a sheen of one roughness by a method that is not the default.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn sheen_albedo_lanes<const METHOD: u8>(curve: AlbedoCurve, cos: &[f32], out: &mut [f32]) {
+    let cos = &cos[..out.len()];
+    for i in 0..out.len() {
+        out[i] = curve.by::<METHOD>(cos[i].abs().min(1.0));
     }
 }
 

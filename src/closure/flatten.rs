@@ -85,6 +85,7 @@ pub(super) fn flatten(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, wo: 
     lobes.ng.clone_from(ng);
     lobes.ones.resize(n, 1.0);
     lobes.surfaces.clear(n);
+    lobes.surfaces.sheen_albedo = lobes.settings.sheen_albedo;
     lobes.layers.clear();
     lobes.media.clear();
     lobes.lobes.clear();

@@ -11,7 +11,7 @@ macro_rules! with_source {
         use $crate::bsdf::sheen::shadowing::Shadowing;
         use $crate::bsdf::fresnel::{Conductor, Dielectric, Schlick, Term};
         use $crate::bsdf::microfacet::{Beckmann, Blinn, Ggx, Microfacet};
-        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, fibers::Fibers, normals::ByNormals};
+        use $crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, SERIES, Sheen, fibers::Fibers, normals::ByNormals};
         use $crate::bsdf::{ashikhmin_shirley, burley, eon, hair, lafortune, lambert, oren_nayar, phong, velvet, ward};
         use $crate::closure::kinds::{Facets, Kind};
         macro_rules! run {
@@ -52,11 +52,15 @@ macro_rules! with_source {
             Kind::Sheen(Shadowing::Exact, false) => run!(Sheen<EXACT, false>),
             Kind::Sheen(Shadowing::Published, true) => run!(Sheen<PUBLISHED, true>),
             Kind::Sheen(Shadowing::Published, false) => run!(Sheen<PUBLISHED, false>),
+            Kind::Sheen(Shadowing::Series, true) => run!(Sheen<SERIES, true>),
+            Kind::Sheen(Shadowing::Series, false) => run!(Sheen<SERIES, false>),
             Kind::Sheen(Shadowing::Ashikhmin, _) => run!(Sheen<ASHIKHMIN, false>),
             Kind::SheenByNormals(Shadowing::Exact, true) => run!(ByNormals<EXACT, true>),
             Kind::SheenByNormals(Shadowing::Exact, false) => run!(ByNormals<EXACT, false>),
             Kind::SheenByNormals(Shadowing::Published, true) => run!(ByNormals<PUBLISHED, true>),
             Kind::SheenByNormals(Shadowing::Published, false) => run!(ByNormals<PUBLISHED, false>),
+            Kind::SheenByNormals(Shadowing::Series, true) => run!(ByNormals<SERIES, true>),
+            Kind::SheenByNormals(Shadowing::Series, false) => run!(ByNormals<SERIES, false>),
             Kind::SheenByNormals(Shadowing::Ashikhmin, _) => run!(ByNormals<ASHIKHMIN, false>),
             Kind::Microfacet { distribution, term, refract } => match (distribution, term, refract) {
                 (Facets::Ggx, Term::Dielectric, false) => run!(Microfacet<Ggx, Dielectric, false>),

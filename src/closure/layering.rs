@@ -5,13 +5,16 @@
 //! as its own top plus what that lets through of its base. The sum is clamped to 1. The albedo of each leaf is the
 //! one its model documents; transmitting lobes count too, as what they pass has left the base's light.
 
-use super::batch::{LayerColumns, Triples, albedo_lanes, average_lanes, layer_lanes, top_albedo_lanes};
+use super::batch::{
+    LayerColumns, Triples, albedo_lanes, average_lanes, layer_lanes, sheen_albedo_lanes, top_albedo_lanes,
+};
 use super::kinds::Kind;
 use super::kinds::with_source;
 use super::media::Media;
-use super::settings::Layering;
-use super::surfaces::{NONE, Surface, Surfaces};
+use super::settings::{Layering, SheenAlbedo};
+use super::surfaces::{NONE, Surface, Surfaces, Values};
 use super::weights::{Operand, multiply};
+use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD};
 use crate::bsdf::specular::{reflection, refraction};
 use crate::bsdf::{GAUSS, between};
 use crate::math::columns::Column3;
@@ -375,5 +378,28 @@ pub fn surface_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &
         }
         return;
     }
+    let method = surfaces.sheen_albedo;
+    if let Kind::Sheen(term, soft) | Kind::SheenByNormals(term, soft) = surface.kind
+        && term.is_exact()
+        && method != SheenAlbedo::Fit
+    {
+        return sheen_albedo(surfaces, surface, soft, &cos, out);
+    }
     with_source!(surfaces, surface, |M, source| albedo_lanes::<M, _>(source, &cos, out));
+}
+
+/// The albedo of a sheen by another method than the default.
+fn sheen_albedo(surfaces: &Surfaces, surface: &Surface, soft: bool, cos: &[f32], out: &mut [f32]) {
+    let method = surfaces.sheen_albedo;
+    let curve = |lane| AlbedoCurve::exact(method, soft, surfaces.param(surface, 0, lane));
+    if let Values::Uniform(_) = surface.params {
+        return match method {
+            SheenAlbedo::Short => sheen_albedo_lanes::<SHORT_METHOD>(curve(0), cos, out),
+            SheenAlbedo::Fit => sheen_albedo_lanes::<FIT_METHOD>(curve(0), cos, out),
+            SheenAlbedo::Long => sheen_albedo_lanes::<LONG_METHOD>(curve(0), cos, out),
+        };
+    }
+    for lane in 0..out.len() {
+        out[lane] = curve(lane).by_method(method, cos[lane].abs().min(1.0));
+    }
 }

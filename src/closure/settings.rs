@@ -1,5 +1,6 @@
-//! What a render may choose about closures when the shader does not: layering, shadowing, softening, sheen sampling.
+//! What a render may choose about closures when the shader does not: layering, shadowing, softening, albedo, sampling.
 
+pub use crate::bsdf::sheen::albedo::SheenAlbedo;
 pub use crate::bsdf::sheen::sampling::SheenSampling;
 pub use crate::bsdf::sheen::shadowing::Shadowing;
 use std::fmt;
@@ -52,6 +53,8 @@ pub struct Settings {
     pub shadowing: Shadowing,
     /// Whether the terminator of sheens is softened (eq. 4 of the paper).
     pub softening: bool,
+    /// How the albedo of sheens is found. Kelemen's mean albedo always takes the default.
+    pub sheen_albedo: SheenAlbedo,
     /// How sheen directions are sampled.
     pub sheen_sampling: SheenSampling,
 }
@@ -62,6 +65,7 @@ impl Default for Settings {
             layering: Layering::Min,
             shadowing: Shadowing::Exact,
             softening: true,
+            sheen_albedo: SheenAlbedo::Fit,
             sheen_sampling: SheenSampling::Proposal,
         }
     }
@@ -77,6 +81,9 @@ mod tests {
             assert_eq!((name.parse(), value.to_string().as_str()), (Ok(value), name));
         }
         for (name, value) in Shadowing::ALL {
+            assert_eq!((name.parse(), value.to_string().as_str()), (Ok(value), name));
+        }
+        for (name, value) in SheenAlbedo::ALL {
             assert_eq!((name.parse(), value.to_string().as_str()), (Ok(value), name));
         }
         let message = "max".parse::<Layering>().unwrap_err();

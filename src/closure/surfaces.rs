@@ -12,6 +12,7 @@ use super::batch::{
 };
 use super::kinds::{Kind, with_source};
 use super::media::Media;
+use super::settings::SheenAlbedo;
 use super::weights::all_finite;
 use crate::bsdf::{MAX_PARAMS, Params, Scatter};
 use crate::closure::tree::{Floats, Tree};
@@ -109,6 +110,8 @@ impl FrameColumns {
 pub struct Surfaces {
     /// Number of lanes.
     pub lanes: usize,
+    /// How the albedo of sheens is found.
+    pub sheen_albedo: SheenAlbedo,
     /// The surfaces.
     pub list: Vec<Surface>,
     /// Columns of parameters and gates.

@@ -9,7 +9,7 @@
 //! twice, and an albedo of 1.00000 was taken for 1.00071, with an error that looked small.
 
 use crate::math::columns::Column3;
-use crate::measure::chart::{Chart, Place};
+use crate::measure::patch::{Chart, Place};
 use crate::measure::statistics::Random;
 use glam::Vec3;
 use std::f64::consts::PI;

@@ -7,9 +7,10 @@ use velour::bsdf::ashikhmin_shirley::Highlight;
 use velour::bsdf::microfacet::distribution::{Distribution, Widths};
 use velour::bsdf::microfacet::{Beckmann, Ggx};
 use velour::bsdf::oren_nayar::OrenNayar;
+use velour::bsdf::sheen::albedo::{AlbedoCurve, SheenAlbedo};
 use velour::bsdf::sheen::reference::{self, Model};
-use velour::bsdf::sheen::shadowing::{Exact, Published, soften};
-use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
+use velour::bsdf::sheen::shadowing::{Exact, Published, Series, soften};
+use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, SERIES, Sheen, charlie};
 use velour::bsdf::velvet::Velvet;
 use velour::bsdf::{Eval, Scatter, params};
 use velour::math::quadrature::gauss_legendre;
@@ -75,8 +76,13 @@ fn charlie_distribution() {
 #[test]
 fn exact_lambda_by_series_and_by_fit() {
     let (mut series, mut fit, mut g1) = (0.0f64, 0.0f64, 0.0f64);
+    let (mut chebyshev, mut area) = (0.0f64, 0.0f64);
     for row in rows("lambda_exact") {
         let (r, c, expected) = (row.get("r"), row.get("cos"), row.get("lambda"));
+        // Near the normal single floats hold the cosine itself only to 6e-8.
+        let here = error(Series::new(1.0 / r as f32).lambda(c as f32), expected, 1e-6);
+        chebyshev = chebyshev.max(if c <= 0.98 { here } else { 0.0 });
+        area = area.max((reference::lambda_by_area(c, r) - expected).abs() * c);
         series = series.max((reference::lambda(Model::Exact, c, r) / expected - 1.0).abs());
         let lambda = Exact::new(1.0 / r as f32).lambda(c as f32);
         if r >= 0.06 {
@@ -87,6 +93,8 @@ fn exact_lambda_by_series_and_by_fit() {
         }
     }
     hold(series, 1e-8, "Lambda by series");
+    hold(chebyshev, 1e-5, "Lambda by Chebyshev series");
+    hold(area, 1e-10, "area by quadrature");
     hold(fit, 6e-3, "Lambda by fit, r >= 0.06");
     hold(g1, 7e-4, "G1 by fit");
 }
@@ -108,7 +116,7 @@ fn published_lambda() {
 
 #[test]
 fn sheen_f() {
-    let mut worst = [0.0f64; 5];
+    let mut worst = [0.0f64; 7];
     for row in rows("f") {
         let r = row.get("r");
         let wo = narrow(direction(row.get("theta_o_deg").to_radians().cos(), 0.0));
@@ -119,6 +127,8 @@ fn sheen_f() {
             (sheen::<EXACT, false>(r).f(wo, wi), "exact"),
             (sheen::<EXACT, true>(r).f(wo, wi), "exact_soft"),
             (sheen::<ASHIKHMIN, false>(r).f(wo, wi), "charlie_ashV"),
+            (sheen::<SERIES, false>(r).f(wo, wi), "exact"),
+            (sheen::<SERIES, true>(r).f(wo, wi), "exact_soft"),
         ];
         for (k, (value, name)) in values.into_iter().enumerate() {
             worst[k] = worst[k].max(error(value, row.get(name), 1e-5));
@@ -128,6 +138,7 @@ fn sheen_f() {
     hold(worst[1], 1e-4, "f published, softened");
     hold(worst[2], 6e-3, "f exact by fit");
     hold(worst[3], 6e-3, "f exact by fit, softened");
+    hold(worst[5].max(worst[6]), 5e-5, "f exact by series");
 }
 
 #[test]
@@ -312,6 +323,19 @@ fn curve_error<const S: u8, const SOFT: bool>(model: Model, roughnesses: &[f64])
     worst
 }
 
+/// The largest error of the long albedo curve of the exact term.
+fn long_error(soft: bool, roughnesses: &[f64]) -> f64 {
+    let mut worst = 0.0f64;
+    for &r in roughnesses {
+        let curve = AlbedoCurve::exact(SheenAlbedo::Long, soft, r as f32);
+        for c in [1e-4, 4e-4, 2e-3, 0.03, 0.17, 0.47, 0.53, 0.86, 1.0] {
+            let expected = reference::albedo(Model::Exact, soft, c, r, 32);
+            worst = worst.max((f64::from(curve.by_method(SheenAlbedo::Long, c as f32)) - expected).abs());
+        }
+    }
+    worst
+}
+
 #[test]
 fn albedo_curves_hold_between_their_nodes() {
     let between = [0.0601, 0.069, 0.083, 0.11, 0.17, 0.29, 0.47, 0.73, 0.93, 1.0];
@@ -319,6 +343,9 @@ fn albedo_curves_hold_between_their_nodes() {
     hold(curve_error::<EXACT, false>(Model::ExactFit, &between), 1e-3, "curve exact");
     hold(curve_error::<PUBLISHED, true>(Model::Published, &between), 2e-3, "curve published, softened");
     hold(curve_error::<PUBLISHED, false>(Model::Published, &between), 2e-3, "curve published");
+    for (soft, bound) in [(true, 3e-5), (false, 1e-5)] {
+        hold(long_error(soft, &between), bound, "long curve against the exact term");
+    }
     hold(curve_error::<ASHIKHMIN, false>(Model::Ashikhmin, &between), 1e-4, "curve ashikhmin");
     let below = [0.01, 0.02, 0.03, 0.045];
     hold(curve_error::<EXACT, true>(Model::ExactFit, &below), 0.35, "curve exact, softened, r < 0.06");

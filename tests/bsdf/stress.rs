@@ -6,7 +6,7 @@ use velour::bsdf::fresnel::Dielectric;
 use velour::bsdf::microfacet::{Beckmann, Ggx, Microfacet};
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::reference::{self, Model};
-use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, Sheen, charlie};
+use velour::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, SERIES, Sheen, charlie};
 use velour::bsdf::velvet::Velvet;
 use velour::bsdf::{Scatter, Side, params};
 use velour::measure::statistics::Random;
@@ -65,6 +65,8 @@ fn sheen_is_finite_and_right_everywhere() {
     let cases = [
         ("exact, softened", worst_error::<EXACT, true>(Model::ExactFit, 1_000_000)),
         ("exact", worst_error::<EXACT, false>(Model::ExactFit, 200_000)),
+        ("series, softened", worst_error::<SERIES, true>(Model::Exact, 20_000)),
+        ("series", worst_error::<SERIES, false>(Model::Exact, 20_000)),
         ("published, softened", worst_error::<PUBLISHED, true>(Model::Published, 200_000)),
         ("published", worst_error::<PUBLISHED, false>(Model::Published, 200_000)),
         ("ashikhmin", worst_error::<ASHIKHMIN, false>(Model::Ashikhmin, 200_000)),

@@ -7,17 +7,25 @@
 //! a lane loop evaluates them without gathers (error 6.8e-4 and 8.0e-4), instead of 32 x 16 tables (7e-4). The published
 //! fit and Ashikhmin's visibility need degree 12 x 8 for the kink of the one at cos = 0.5 and the gain of the other; their
 //! numbers are constants too, because tables built at the first use cost start-up time and a lock in the lane loop.
+//!
+//! Decision (2026-11-22): how exact the albedo is, is a setting of a render, because it is a matter of accuracy and not of looks,
+//! instead of a keyword of the closure, by which flattening would have to tell lanes apart.
 
 use super::fits::{
-    ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_SOFT, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET,
+    ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_LONG, ALBEDO_EXACT_SOFT, ALBEDO_EXACT_SOFT_LONG, ALBEDO_PUBLISHED,
+    ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET,
 };
 use super::shadowing::Shadowing;
 use crate::bsdf::power::log2;
+use std::fmt;
+use std::str::FromStr;
 
 /// Coefficients of a curve in the cube root of the cosine.
 pub const CURVE: usize = 13;
 /// Coefficients that the fitted exact terms use.
 const SHORT: usize = 7;
+/// Coefficients that the cheapest evaluation uses.
+const SHORTEST: usize = 4;
 /// Coefficients in log r of the long curves.
 pub const SURFACE_COLUMNS: usize = 9;
 /// The smallest cosine of the fit; below it the curve is constant.
@@ -27,6 +35,47 @@ const MIN_T: f32 = 0.046_415_888;
 pub const MIN_FITTED_ROUGHNESS: f32 = 0.06;
 /// log2(0.06), exact to f32.
 const LOG2_MIN: f32 = -4.058_893_7;
+
+/// How the albedo of a sheen with an exact shadowing term is found; other terms have one polynomial only.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SheenAlbedo {
+    /// The first 4 x 3 terms of the default's polynomial: errs by up to 1.5e-2.
+    Short,
+    /// A polynomial of 7 x 5 terms that errs by up to 8.0e-4. The default: layers cannot show more.
+    #[default]
+    Fit,
+    /// A polynomial of 13 x 9 terms that errs by up to 2.3e-5 (softened) or 2.7e-6 (not).
+    Long,
+}
+
+/// [`SheenAlbedo::Short`] as a constant parameter.
+pub const SHORT_METHOD: u8 = 0;
+/// [`SheenAlbedo::Fit`] as a constant parameter.
+pub const FIT_METHOD: u8 = 1;
+/// [`SheenAlbedo::Long`] as a constant parameter.
+pub const LONG_METHOD: u8 = 2;
+
+impl SheenAlbedo {
+    /// All variants with the word that selects them.
+    pub const ALL: [(&'static str, SheenAlbedo); 3] =
+        [("short", SheenAlbedo::Short), ("fit", SheenAlbedo::Fit), ("long", SheenAlbedo::Long)];
+}
+
+impl FromStr for SheenAlbedo {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == text);
+        let unknown = || format!("unknown albedo evaluator \"{text}\"; choose \"short\", \"fit\" or \"long\"");
+        found.map(|&(_, method)| method).ok_or_else(unknown)
+    }
+}
+
+impl fmt::Display for SheenAlbedo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(Self::ALL.iter().find(|(_, method)| method == self).map_or("", |(name, _)| name))
+    }
+}
 
 /// Coefficients of a curve for every roughness.
 pub type Surface = [[f32; SURFACE_COLUMNS]; CURVE];
@@ -46,11 +95,23 @@ impl AlbedoCurve {
     #[inline(always)]
     pub fn new(term: Shadowing, soft: bool, r: f32) -> Self {
         match (term, soft) {
-            (Shadowing::Exact, true) => Self::short(&ALBEDO_EXACT_SOFT, r),
-            (Shadowing::Exact, false) => Self::short(&ALBEDO_EXACT, r),
+            (Shadowing::Exact | Shadowing::Series, true) => Self::short(&ALBEDO_EXACT_SOFT, r),
+            (Shadowing::Exact | Shadowing::Series, false) => Self::short(&ALBEDO_EXACT, r),
             (Shadowing::Published, true) => Self::long(&ALBEDO_PUBLISHED_SOFT, r),
             (Shadowing::Published, false) => Self::long(&ALBEDO_PUBLISHED, r),
             (Shadowing::Ashikhmin, _) => Self::long(&ALBEDO_ASHIKHMIN, r),
+        }
+    }
+
+    /// The curve of an exact term by a method, for [`AlbedoCurve::by`] with the same method.
+    #[inline(always)]
+    pub fn exact(method: SheenAlbedo, soft: bool, r: f32) -> Self {
+        match (method, soft) {
+            (SheenAlbedo::Long, true) => Self::long(&ALBEDO_EXACT_SOFT_LONG, r),
+            (SheenAlbedo::Long, false) => Self::long(&ALBEDO_EXACT_LONG, r),
+            (SheenAlbedo::Fit, _) => Self::new(Shadowing::Exact, soft, r),
+            (SheenAlbedo::Short, true) => Self::shortest(&ALBEDO_EXACT_SOFT, r),
+            (SheenAlbedo::Short, false) => Self::shortest(&ALBEDO_EXACT, r),
         }
     }
 
@@ -71,6 +132,16 @@ impl AlbedoCurve {
     }
 
     #[inline(always)]
+    fn shortest(surface: &[[f32; 5]; SHORT], r: f32) -> Self {
+        let mut c = [0.0; CURVE];
+        let s = roughness_axis(r);
+        for i in 0..SHORTEST {
+            c[i] = chebyshev::<3>(&surface[i], s);
+        }
+        AlbedoCurve { c }
+    }
+
+    #[inline(always)]
     fn long(surface: &Surface, r: f32) -> Self {
         let s = roughness_axis(r);
         let mut c = [0.0; CURVE];
@@ -84,9 +155,35 @@ impl AlbedoCurve {
     #[inline(always)]
     pub fn at<const LONG: bool>(&self, cos: f32) -> f32 {
         let t = cube_root(crate::bsdf::limited(cos, MIN_COS, 1.0));
+        if LONG { self.sum::<CURVE>(t) } else { self.sum::<SHORT>(t) }
+    }
+
+    /// The albedo of a curve of [`AlbedoCurve::exact`]; a constant method lets lane loops become SIMD code.
+    #[inline(always)]
+    pub fn by<const METHOD: u8>(&self, cos: f32) -> f32 {
+        let cos = crate::bsdf::limited(cos, MIN_COS, 1.0);
+        let t = cube_root(cos);
+        match METHOD {
+            SHORT_METHOD => self.sum::<SHORTEST>(t),
+            FIT_METHOD => self.sum::<SHORT>(t),
+            // A step of Newton brings the root to the last digits, which this curve is worth.
+            _ => self.sum::<CURVE>(t - (t - cos / (t * t)) * (1.0 / 3.0)),
+        }
+    }
+
+    /// The same for a method that is known only now.
+    pub fn by_method(&self, method: SheenAlbedo, cos: f32) -> f32 {
+        match method {
+            SheenAlbedo::Short => self.by::<SHORT_METHOD>(cos),
+            SheenAlbedo::Fit => self.by::<FIT_METHOD>(cos),
+            SheenAlbedo::Long => self.by::<LONG_METHOD>(cos),
+        }
+    }
+
+    #[inline(always)]
+    fn sum<const TERMS: usize>(&self, t: f32) -> f32 {
         let x = (t - MIN_T) * (2.0 / (1.0 - MIN_T)) - 1.0;
-        let value = if LONG { chebyshev::<CURVE>(&self.c, x) } else { chebyshev::<SHORT>(&self.c, x) };
-        value.clamp(0.0, 1.0)
+        chebyshev::<TERMS>(&self.c, x).clamp(0.0, 1.0)
     }
 }
 
@@ -96,7 +193,7 @@ impl AlbedoCurve {
 /// changes an albedo by at most 3e-5.
 /// The library's function is exact to the last bit and costs two divisions in f64; the curve needs neither.
 #[inline(always)]
-fn cube_root(x: f32) -> f32 {
+pub(crate) fn cube_root(x: f32) -> f32 {
     let y = f32::from_bits(x.to_bits() / 3 + 709_958_130);
     let cube = y * y * y;
     y * (cube + 2.0 * x) / (2.0 * cube + x)
@@ -109,7 +206,7 @@ fn roughness_axis(r: f32) -> f32 {
 
 /// The first N terms of a Chebyshev series by Clenshaw's recurrence.
 #[inline(always)]
-fn chebyshev<const N: usize>(c: &[f32], x: f32) -> f32 {
+pub(super) fn chebyshev<const N: usize>(c: &[f32], x: f32) -> f32 {
     let (mut b1, mut b2) = (0.0, 0.0);
     for k in (1..N).rev() {
         (b1, b2) = (2.0 * x * b1 - b2 + c[k], b1);

@@ -36,8 +36,11 @@ pub fn exact_f(cos: f64, n: f64) -> f64 {
     here
 }
 
-/// 2F1(-1/2, -n/2; 1; u).
+/// 2F1(-1/2, -n/2; 1; u), n up to 12. Near u = 1 the series takes thousands of terms and an integral takes its place.
 fn series(u: f64, n: f64) -> f64 {
+    if u > 0.95 {
+        return around_the_circle(u, n);
+    }
     let (mut term, mut sum) = (1.0f64, 1.0f64);
     for k in 0..400_000 {
         let k = f64::from(k);
@@ -49,6 +52,46 @@ fn series(u: f64, n: f64) -> f64 {
         }
     }
     sum
+}
+
+/// 2F1(-1/2, -n/2; 1; u) as the constant term of (1 - sqrt(u) z)^(1/2) (1 - sqrt(u) / z)^(n/2) on the unit circle.
+///
+/// Source: the product of two binomial series. Domain: u 0..1, n 1..12; beyond it the integrand cancels.
+/// Gives: relative error below 1e-10.
+fn around_the_circle(u: f64, n: f64) -> f64 {
+    let x = u.sqrt();
+    let (rest, m) = ((1.0 - u) / (1.0 + x), 0.5 * n);
+    let mut sum = 0.0;
+    for node in tanh_sinh(45, 0.0, PI) {
+        let s = (0.5 * node.x).sin();
+        let (re, im) = (rest + 2.0 * x * s * s, x * node.x.sin());
+        sum += node.weight * re.hypot(im).powf(m + 0.5) * ((m - 0.5) * im.atan2(re)).cos();
+    }
+    sum / PI
+}
+
+/// Lambda by the integral that defines it, without any closed form: cos (1 + Lambda) is the area that micronormals of
+/// density D project toward the viewer.
+///
+/// Source: Smith 1967; the azimuth is integrated by hand, the elevation on both sides of the horizon of the viewer.
+/// Domain: cos above 0 and below 1, r 0.01..1. Gives: error below 1e-11 / cos.
+pub fn lambda_by_area(cos: f64, r: f64) -> f64 {
+    let (sin, horizon) = (((1.0 - cos) * (1.0 + cos)).sqrt(), 0.5 * PI - cos.acos());
+    let mut area = 0.0;
+    for (a, b) in [(0.0, horizon), (horizon, 0.5 * PI)] {
+        for node in tanh_sinh(48, a, b) {
+            let (up, across) = (cos * node.x.cos(), sin * node.x.sin());
+            let ring = if up >= across {
+                PI * up
+            } else {
+                let edge = (-up / across).acos();
+                up * edge + across * edge.sin()
+            };
+            let s = node.x.sin();
+            area += node.weight * 2.0 * ring * s * distribution(s * s, r);
+        }
+    }
+    area / cos - 1.0
 }
 
 /// f(c) by the fit with one root and one division.

@@ -11,8 +11,10 @@ fn rule_at(arguments: &Arguments, column: Option<Ints>, lane: usize, settings: S
     column.map_or(settings.layering, |c| rule_of(arguments.text(c, lane), settings.layering))
 }
 
-/// The code of the sheen of fibers, after those of three shadowing terms, softened or not, drawn in four ways.
-const FIBERS: u32 = 24;
+/// How many shadowing terms there are.
+const TERMS: u32 = Shadowing::ALL.len() as u32;
+/// The code of the sheen of fibers, after those of all shadowing terms, softened or not, drawn in all ways.
+const FIBERS: u32 = TERMS * 2 * SheenSampling::ALL.len() as u32;
 
 fn rule_code(rule: Layering) -> u32 {
     Layering::ALL.iter().position(|(_, r)| *r == rule).unwrap_or(0) as u32
@@ -38,8 +40,8 @@ fn kind_of(code: u32) -> (Kind, SheenSampling) {
     if code == FIBERS {
         return (Kind::Fibers, SheenSampling::Proposal);
     }
-    let (term, soft) = (Shadowing::ALL[(code % 3) as usize].1, code / 3 % 2 == 1);
-    match SheenSampling::ALL[(code / 6) as usize].1 {
+    let (term, soft) = (Shadowing::ALL[(code % TERMS) as usize].1, code / TERMS % 2 == 1);
+    match SheenSampling::ALL[(code / (2 * TERMS)) as usize].1 {
         SheenSampling::Normals => (Kind::SheenByNormals(term, soft), SheenSampling::Normals),
         scheme => (Kind::Sheen(term, soft), scheme),
     }
@@ -60,7 +62,7 @@ pub(super) fn sheen(surfaces: &mut Surfaces, context: &LeafContext, arguments: &
             .map_or(settings.sheen_sampling, |c| arguments.text(c, lane).parse().unwrap_or(settings.sheen_sampling));
         let scheme = SheenSampling::ALL.iter().position(|(_, s)| *s == scheme).unwrap_or(0) as u32;
         let fibers = mode.is_some_and(|c| tree.int(c, lane) == 1);
-        let kind = if fibers { FIBERS } else { term + 3 * (u32::from(soft) + 2 * scheme) };
+        let kind = if fibers { FIBERS } else { term + TERMS * (u32::from(soft) + 2 * scheme) };
         1 + rule_code(rule_at(arguments, layering, lane, settings)) + 3 * kind
     };
     let tint = arguments.triple(first + 1);

@@ -11,8 +11,8 @@ const LAYERING: ParamSpec = choice(
 );
 const SHADOWING: ParamSpec = choice(
     "shadowing",
-    &["exact", "published", "ashikhmin"],
-    "shadowing term: \"exact\" (default), \"published\" (fit of the paper) or \"ashikhmin\" (real-time visibility)",
+    &["exact", "published", "ashikhmin", "series"],
+    "shadowing term: \"exact\" (default), \"published\" (fit of the paper), \"ashikhmin\" (real-time visibility) or \"series\" (exact to 4e-6)",
 );
 const SAMPLING: ParamSpec = choice(
     "sampling",

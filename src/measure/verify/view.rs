@@ -5,7 +5,7 @@ use super::draws::{Draw, Kind, draw};
 use super::subject::Scatterer;
 use crate::closure::Evaluation;
 use crate::math::columns::Column3;
-use crate::measure::chart::Chart;
+use crate::measure::patch::Chart;
 use crate::measure::sphere::{Cells, Integrals, LANES};
 use crate::measure::statistics::Random;
 use glam::Vec3;
