@@ -11,6 +11,8 @@
 //! **One answer.** The closest hit does not depend on the instruction set or on what else is in a batch of rays; of
 //! hits at the same distance the primitive that comes first in the scene is taken.
 
+mod pages;
+mod prefetch;
 mod shape;
 mod tree;
 mod walk;

@@ -1,10 +1,12 @@
 //! The hierarchy that rays walk: nodes of eight boxes, leaves of four triangles side by side, or of one sphere or quad.
 //!
-//! The shape of the tree is `obvhs`'s (pairs found along a Morton curve, then reinsertion). Its pairs are opened here,
-//! largest box first, until a node has eight children, and what holds four triangles or fewer becomes one leaf.
+//! The shape of the tree is `obvhs`'s (pairs found along a Morton curve, then reinsertion). Its pairs are put together
+//! here to nodes of up to eight children and leaves of up to four triangles.
 
+use super::pages::Pages;
 use super::shape::Analytic;
 use crate::scene::{Geometry, Shape};
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3A;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -25,13 +27,15 @@ pub const BLOCK: u32 = 1 << 31;
 pub const ANALYTIC: u32 = 1 << 30;
 
 /// Eight boxes, each axis its lower planes and then its upper ones. A child that is not there has an empty box.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub struct Node {
     /// Lower x, upper x, lower y, upper y, lower z, upper z.
     pub planes: [[f32; WIDTH]; 6],
     /// A node's index, or a leaf with its mark.
     pub children: [u32; WIDTH],
+    /// Fills the last cache line.
+    spare: [u32; WIDTH],
 }
 
 impl Node {
@@ -45,6 +49,7 @@ impl Node {
             [f32::NEG_INFINITY; WIDTH],
         ],
         children: [0; WIDTH],
+        spare: [0; WIDTH],
     };
 
     fn set(&mut self, slot: usize, bounds: &Aabb, child: u32) {
@@ -57,7 +62,7 @@ impl Node {
 }
 
 /// Four triangles. A lane that is empty repeats the first triangle, which changes no answer.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub struct Block {
     /// By corner, then axis, then triangle.
@@ -67,12 +72,12 @@ pub struct Block {
 }
 
 /// The whole hierarchy.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Tree {
     /// The nodes; the first is the root.
-    pub nodes: Vec<Node>,
+    pub nodes: Pages<Node>,
     /// The leaves of triangles.
-    pub blocks: Vec<Block>,
+    pub blocks: Pages<Block>,
     /// The leaves of one sphere or quad.
     pub analytic: Vec<Analytic>,
     /// How many entries a walk's stack can need.
@@ -83,15 +88,22 @@ impl Tree {
     /// The tree over `geometry`, whose primitives reach as far as `magnitude` from the origin.
     pub fn new(geometry: &Geometry, magnitude: &[f32]) -> Self {
         if geometry.primitives.is_empty() {
-            return Tree::default();
+            return Tree::empty(0);
         }
         let pairs = pairs(geometry, magnitude);
         Opening::new(&pairs, geometry).run()
     }
 
+    /// A tree without nodes, with room for those of `primitives`.
+    fn empty(primitives: usize) -> Self {
+        // As pairs, all inner nodes would be one less than the leaves.
+        let (nodes, blocks) = (Pages::new(primitives.max(1)), Pages::new(primitives));
+        Tree { nodes, blocks, analytic: Vec::new(), stack: 0 }
+    }
+
     /// Bytes of nodes and leaves.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.analytic[..])
+        size_of_val(self.nodes.items()) + size_of_val(self.blocks.items()) + size_of_val(&self.analytic[..])
     }
 }
 
@@ -116,19 +128,38 @@ fn bounds(shape: &Shape, pad: f32) -> Aabb {
 }
 
 /// From pairs to nodes of eight.
+///
+/// Which pairs to open is chosen to cost a random ray least, by dynamic programming from the leaves up. Source: Ylitie,
+/// Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.1, with
+/// areas for probabilities. Departs from source: leaves are blocks of up to four triangles, or one other primitive.
 struct Opening<'a> {
     pairs: &'a Bvh2,
     geometry: &'a Geometry,
-    /// Of each node of the tree of pairs, how many triangles it holds, and more than a block takes if that is so or
-    /// if it holds anything else.
-    counts: Vec<u8>,
+    choices: Vec<Choice>,
     tree: Tree,
 }
 
+/// What is best done with one node of the tree of pairs.
+#[derive(Clone, Copy, Default)]
+struct Choice {
+    /// `left[i - 1]`: how many of i children its left half gets; 0 to take one less, or not to divide it at all.
+    left: [u8; WIDTH],
+    /// How many triangles it holds; `MANY` and more: too many for a block, or anything else among them.
+    count: u8,
+    /// As one child it is a leaf.
+    leaf: bool,
+}
+
+/// The least cost of one node of the tree of pairs as one to seven children of a wide node.
+type Costs = [f32; WIDTH - 1];
+
+const MANY: u8 = LANES as u8 + 1;
+
+/// What a block costs, where a node costs 1. Measured: see `super`.
+const COST_OF_BLOCK: f32 = 0.6;
+
 impl<'a> Opening<'a> {
     fn new(pairs: &'a Bvh2, geometry: &'a Geometry) -> Self {
-        const MANY: u8 = LANES as u8 + 1;
-        let mut counts = vec![0u8; pairs.nodes.len()];
         let mut order = Vec::with_capacity(pairs.nodes.len());
         let mut todo = vec![0u32];
         while let Some(index) = todo.pop() {
@@ -138,40 +169,85 @@ impl<'a> Opening<'a> {
                 todo.extend([node.first_index, node.first_index + 1]);
             }
         }
+        let mut opening =
+            Opening { pairs, geometry, choices: Vec::new(), tree: Tree::empty(geometry.primitives.len()) };
+        opening.choices.resize(pairs.nodes.len(), Choice::default());
+        // Backward, both halves of a node come before it, the left one first.
+        let mut costs: Vec<Costs> = Vec::new();
         for &index in order.iter().rev() {
-            let node = &pairs.nodes[index as usize];
-            let first = node.first_index as usize;
-            counts[index as usize] = match node.is_leaf() {
-                false => (counts[first] + counts[first + 1]).min(MANY),
-                true => match geometry.primitives[pairs.primitive_indices[first] as usize].shape {
-                    Shape::Triangle { .. } => 1,
-                    _ => MANY,
-                },
+            let of_node = if pairs.nodes[index as usize].is_leaf() {
+                opening.end(index)
+            } else {
+                let right = costs.pop().unwrap_or_default();
+                let left = costs.pop().unwrap_or_default();
+                opening.choose(index, &left, &right)
             };
+            costs.push(of_node);
         }
-        Opening { pairs, geometry, counts, tree: Tree::default() }
+        opening
     }
 
-    fn is_leaf(&self, index: u32) -> bool {
-        self.counts[index as usize] as usize <= LANES || self.pairs.nodes[index as usize].is_leaf()
+    fn area(&self, index: u32) -> f32 {
+        self.pairs.nodes[index as usize].aabb().half_area()
+    }
+
+    /// The costs of a node with one primitive.
+    fn end(&mut self, index: u32) -> Costs {
+        let primitive = self.pairs.primitive_indices[self.pairs.nodes[index as usize].first_index as usize];
+        let triangle = matches!(self.geometry.primitives[primitive as usize].shape, Shape::Triangle { .. });
+        let count = if triangle { 1 } else { MANY };
+        self.choices[index as usize] = Choice { left: [0; WIDTH], count, leaf: true };
+        [COST_OF_BLOCK * self.area(index); WIDTH - 1]
+    }
+
+    /// The costs of a node with two halves, and what to do for them.
+    fn choose(&mut self, index: u32, left: &Costs, right: &Costs) -> Costs {
+        let first = self.pairs.nodes[index as usize].first_index as usize;
+        let count = (self.choices[first].count + self.choices[first + 1].count).min(MANY);
+        let mut choice = Choice { left: [0; WIDTH], count, leaf: false };
+        let best = |children: usize| {
+            let ways = (1..children).filter(|k| *k < WIDTH && children - k < WIDTH);
+            let costs = ways.map(|k| (left[k - 1] + right[children - k - 1], k as u8));
+            costs.fold((f32::INFINITY, 1), |a, b| if b.0 < a.0 { b } else { a })
+        };
+        let (inside, k) = best(WIDTH);
+        choice.left[WIDTH - 1] = k;
+        let area = self.area(index);
+        let mut costs = [area + inside; WIDTH - 1];
+        if count < MANY && COST_OF_BLOCK * area <= costs[0] {
+            choice.leaf = true;
+            costs[0] = COST_OF_BLOCK * area;
+        }
+        for children in 2..WIDTH {
+            let (cost, k) = best(children);
+            costs[children - 1] = costs[children - 2];
+            if cost < costs[children - 1] {
+                costs[children - 1] = cost;
+                choice.left[children - 1] = k;
+            }
+        }
+        self.choices[index as usize] = choice;
+        costs
     }
 
     fn run(mut self) -> Tree {
         self.tree.nodes.push(Node::EMPTY);
-        let mut todo = vec![(0u32, 0usize, 1usize)];
-        let mut depth = 1;
+        let (mut todo, mut depth) = (vec![(0u32, 0usize, 1usize)], 1);
+        let mut children = Vec::with_capacity(WIDTH);
         while let Some((index, node, level)) = todo.pop() {
             depth = depth.max(level);
-            for (slot, &child) in self.open(index).iter().enumerate() {
-                let code = if self.is_leaf(child) {
+            children.clear();
+            self.open(index, WIDTH, &mut children);
+            for (slot, &child) in children.iter().enumerate() {
+                let code = if self.choices[child as usize].leaf {
                     self.leaf(child)
                 } else {
-                    self.tree.nodes.push(Node::EMPTY);
-                    todo.push((child, self.tree.nodes.len() - 1, level + 1));
-                    self.tree.nodes.len() as u32 - 1
+                    let new = self.tree.nodes.push(Node::EMPTY);
+                    todo.push((child, new as usize, level + 1));
+                    new
                 };
                 let bounds = *self.pairs.nodes[child as usize].aabb();
-                self.tree.nodes[node].set(slot, &bounds, code);
+                self.tree.nodes.items_mut()[node].set(slot, &bounds, code);
             }
         }
         // Each level leaves seven behind while the eighth is walked; the last one is pushed whole.
@@ -179,29 +255,26 @@ impl<'a> Opening<'a> {
         self.tree
     }
 
-    /// Up to eight nodes that together are `index`.
-    fn open(&self, index: u32) -> Vec<u32> {
-        if self.is_leaf(index) {
-            return vec![index];
+    /// Appends the nodes that make `index` as up to `count` children; never deeper than `count` calls.
+    fn open(&self, index: u32, count: usize, children: &mut Vec<u32>) {
+        let choice = &self.choices[index as usize];
+        let count = (2..=count).rev().find(|i| choice.left[i - 1] > 0);
+        match count {
+            Some(count) if !self.pairs.nodes[index as usize].is_leaf() => {
+                let first = self.pairs.nodes[index as usize].first_index;
+                let left = choice.left[count - 1] as usize;
+                self.open(first, left, children);
+                self.open(first + 1, count - left, children);
+            }
+            _ => children.push(index),
         }
-        let mut open = Vec::with_capacity(WIDTH);
-        open.push(index);
-        while open.len() < WIDTH {
-            let area = |i: u32| self.pairs.nodes[i as usize].aabb().half_area();
-            let candidates = (0..open.len()).filter(|&k| !self.is_leaf(open[k]));
-            let Some(k) = candidates.max_by(|&a, &b| area(open[a]).total_cmp(&area(open[b]))) else { break };
-            let first = self.pairs.nodes[open[k] as usize].first_index;
-            open[k] = first;
-            open.push(first + 1);
-        }
-        open
     }
 
     /// Stores a leaf; gives its code.
     fn leaf(&mut self, index: u32) -> u32 {
         let mut ids = self.primitives(index);
         ids.sort_unstable();
-        if self.counts[index as usize] as usize > LANES {
+        if self.choices[index as usize].count == MANY {
             let id = ids[0];
             self.tree.analytic.push(Analytic { shape: self.geometry.primitives[id as usize].shape, id });
             return ANALYTIC | (self.tree.analytic.len() as u32 - 1);
@@ -216,8 +289,7 @@ impl<'a> Opening<'a> {
                 }
             }
         }
-        self.tree.blocks.push(block);
-        BLOCK | (self.tree.blocks.len() as u32 - 1)
+        BLOCK | self.tree.blocks.push(block)
     }
 
     /// All primitives below a node.

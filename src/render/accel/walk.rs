@@ -12,6 +12,8 @@
 //!
 //! **Ties** go to the primitive that comes first in the scene, whatever the order in which leaves are met.
 
+use super::prefetch::prefetch;
+use super::shape::Analytic;
 use super::tree::{ANALYTIC, BLOCK, Block, LANES, Node, Tree, WIDTH};
 use super::{Hit, NOTHING, Ray};
 use multiversion::multiversion;
@@ -133,9 +135,32 @@ fn take(best: &mut Hit, t: f32, primitive: u32, u: f32, v: f32) {
     }
 }
 
+/// The lists of a tree.
+struct Parts<'a> {
+    nodes: &'a [Node],
+    blocks: &'a [Block],
+    analytic: &'a [Analytic],
+}
+
+impl<'a> Parts<'a> {
+    fn new(tree: &'a Tree) -> Self {
+        Parts { nodes: tree.nodes.items(), blocks: tree.blocks.items(), analytic: &tree.analytic }
+    }
+
+    /// Has a child on its way from memory while others are looked at.
+    #[inline(always)]
+    fn ask_for(&self, child: u32) {
+        if child < ANALYTIC {
+            prefetch(&self.nodes[child as usize]);
+        } else if child & BLOCK != 0 {
+            prefetch(&self.blocks[(child ^ BLOCK) as usize]);
+        }
+    }
+}
+
 /// The closest hit of one ray; or, for `ANY`, any hit short of its reach.
 #[inline(always)]
-fn walk<const ANY: bool>(tree: &Tree, ray: &Ray, stack: &mut [u64]) -> Hit {
+fn walk<const ANY: bool>(tree: &Parts, ray: &Ray, stack: &mut [u64]) -> Hit {
     let traveller = Traveller::new(ray);
     // No hit is at infinity, so the largest number stands for it.
     let mut best = Hit { t: lesser(ray.reach, f32::MAX), primitive: NOTHING, u: 0.0, v: 0.0 };
@@ -149,6 +174,7 @@ fn walk<const ANY: bool>(tree: &Tree, ray: &Ray, stack: &mut [u64]) -> Hit {
             if inside != 0 {
                 let first = inside.trailing_zeros() as usize;
                 inside &= inside - 1;
+                tree.ask_for(node.children[first]);
                 if inside == 0 {
                     current = node.children[first];
                     continue;
@@ -159,6 +185,7 @@ fn walk<const ANY: bool>(tree: &Tree, ray: &Ray, stack: &mut [u64]) -> Hit {
                 while inside != 0 {
                     let k = inside.trailing_zeros() as usize;
                     inside &= inside - 1;
+                    tree.ask_for(node.children[k]);
                     let new = key(entry[k], node.children[k]);
                     let mut at = top;
                     if !ANY {
@@ -224,8 +251,9 @@ fn key(entry: f32, child: u32) -> u64 {
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
 pub fn closest(tree: &Tree, rays: &[Ray], hits: &mut [Hit]) {
     let mut stack = vec![0u64; tree.stack];
+    let parts = Parts::new(tree);
     for (ray, hit) in rays.iter().zip(hits) {
-        *hit = walk::<false>(tree, ray, &mut stack);
+        *hit = walk::<false>(&parts, ray, &mut stack);
         if hit.primitive == NOTHING {
             hit.t = f32::INFINITY;
         }
@@ -236,7 +264,8 @@ pub fn closest(tree: &Tree, rays: &[Ray], hits: &mut [Hit]) {
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
 pub fn any(tree: &Tree, rays: &[Ray], blocked: &mut [bool]) {
     let mut stack = vec![0u64; tree.stack];
+    let parts = Parts::new(tree);
     for (ray, blocked) in rays.iter().zip(blocked) {
-        *blocked = walk::<true>(tree, ray, &mut stack).primitive != NOTHING;
+        *blocked = walk::<true>(&parts, ray, &mut stack).primitive != NOTHING;
     }
 }
