@@ -12,6 +12,7 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
+use obvhs::ploc::PlocSearchDistance;
 use std::time::Duration;
 
 /// Children of a node.
@@ -111,7 +112,13 @@ impl Tree {
 fn pairs(geometry: &Geometry, magnitude: &[f32]) -> Bvh2 {
     let bounds = |(i, p): (usize, &crate::scene::Primitive)| bounds(&p.shape, super::OFFSET * magnitude[i]);
     let bounds: Vec<Aabb> = geometry.primitives.iter().enumerate().map(bounds).collect();
-    let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
+    let params = BvhBuildParams {
+        ploc_search_distance: PlocSearchDistance::High,
+        search_depth_threshold: 0,
+        reinsertion_batch_ratio: 0.1,
+        max_prims_per_leaf: 1,
+        ..BvhBuildParams::medium_build()
+    };
     build_bvh2(&bounds, params, &mut Duration::default())
 }
 
