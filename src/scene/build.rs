@@ -1,17 +1,20 @@
 //! Builds a scene, one XML element after another; what each tag and attribute means is written here and nowhere else.
 
 use super::error::{Place, SceneError};
+use super::flakes::Flakes;
 use super::geometry::{Geometry, Shape};
 use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
 use super::load::{Background, Camera, Material, Options, Scene, within};
 use super::mesh::{MaterialNames, add_mesh};
 use super::nearest::nearest;
 use super::spec::{Statements, parse_group};
+use super::weave::Weave;
 use super::xml::Element;
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-const TAGS: [&str; 7] = ["Option", "Camera", "Sphere", "Quad", "Model", "Background", "ShaderGroup"];
+const TAGS: [&str; 9] =
+    ["Option", "Camera", "Sphere", "Quad", "Model", "Weave", "Flakes", "Background", "ShaderGroup"];
 const OPTIONS: [&str; 5] = ["max_bounces", "rr_depth", "aa", "no_jitter", "show_globals"];
 const GROUP_TAGS: [&str; 3] = ["Parameter", "Shader", "ConnectShaders"];
 
@@ -49,6 +52,8 @@ impl<'c> Builder<'c> {
             "Sphere" => self.sphere(e),
             "Quad" => self.quad(e),
             "Model" => self.model(e),
+            "Weave" => self.weave(e),
+            "Flakes" => self.flakes(e),
             "Background" => self.background(e),
             "ShaderGroup" => self.shader_group(e),
             _ => Err(e.unknown_tag(&TAGS)),
@@ -169,6 +174,31 @@ impl<'c> Builder<'c> {
                 format!("{place}: warning: {degenerate} triangles of `{filename}` have no area and are left out");
             self.scene.warnings.push(warning);
         }
+        Ok(())
+    }
+
+    fn weave(&mut self, e: &Element) -> Result<(), SceneError> {
+        e.check_attributes(&Weave::ATTRIBUTES)?;
+        let warp = self.last_material(e)?;
+        let weft = match e.node.attribute("weft_group") {
+            None => warp,
+            Some(name) => *self.by_name.get(name).ok_or_else(|| {
+                let names: Vec<&str> = self.by_name.keys().map(String::as_str).collect();
+                let error = e.bad_value("weft_group", "the name of a <ShaderGroup> above");
+                match nearest(name, &names) {
+                    Some(near) => error.with_help(format!("did you mean `{near}`?")),
+                    None => error.with_help("give the <ShaderGroup> of the weft a `name`"),
+                }
+            })?,
+        };
+        Weave::read(e)?.add(&mut self.scene.geometry, warp, weft, &e.place());
+        Ok(())
+    }
+
+    fn flakes(&mut self, e: &Element) -> Result<(), SceneError> {
+        e.check_attributes(&Flakes::ATTRIBUTES)?;
+        let material = self.last_material(e)?;
+        Flakes::read(e)?.add(&mut self.scene.geometry, material, &e.place());
         Ok(())
     }
 

@@ -6,12 +6,14 @@
 mod build;
 mod compiler;
 mod error;
+mod flakes;
 mod geometry;
 mod group;
 mod load;
 mod mesh;
 mod nearest;
 mod spec;
+mod weave;
 mod xml;
 
 pub use compiler::ShaderFiles;

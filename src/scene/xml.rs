@@ -4,6 +4,7 @@ use super::error::{Place, SceneError};
 use super::nearest::nearest;
 use glam::Vec3;
 use roxmltree::{Attribute, Document, Node};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// An element and the file it is in.
@@ -139,6 +140,24 @@ impl<'d, 'i> Element<'d, 'i> {
         match self.node.attribute(name) {
             None => Ok(None),
             Some(text) => text.trim().parse().map(Some).map_err(|_| self.bad_value(name, what)),
+        }
+    }
+
+    /// A whole number in a range, or `default` when the attribute is not there.
+    pub fn whole(&self, name: &str, default: u32, range: RangeInclusive<u32>) -> Result<u32, SceneError> {
+        let what = format!("a whole number from {} to {}", range.start(), range.end());
+        match self.number::<u32>(name, &what)?.unwrap_or(default) {
+            value if range.contains(&value) => Ok(value),
+            _ => Err(self.bad_value(name, &what)),
+        }
+    }
+
+    /// A number in a range, or `default` when the attribute is not there.
+    pub fn real(&self, name: &str, default: f32, range: RangeInclusive<f32>) -> Result<f32, SceneError> {
+        let what = format!("a number from {} to {}", range.start(), range.end());
+        match self.number::<f32>(name, &what)?.unwrap_or(default) {
+            value if range.contains(&value) => Ok(value),
+            _ => Err(self.bad_value(name, &what)),
         }
     }
 

@@ -1,7 +1,6 @@
 //! How fast it is: run with `cargo test --release --test render -- --ignored --nocapture`.
 
 use super::materials::scene;
-use velour::render::accel::{Accel, Method};
 use velour::render::{Settings, Silent, render};
 
 /// The scene that peers were timed on.
@@ -37,52 +36,6 @@ fn figure_1() {
             image.mean()[0],
         );
         velour::render::output::write(&image, &std::env::temp_dir().join("figure1.png")).unwrap();
-    }
-}
-
-/// Rays from all around toward points inside a ball, as scattered light makes them.
-fn rays(count: u32, reach: f32) -> Vec<(glam::Vec3, glam::Vec3)> {
-    let point = |i: u32, set: u32| {
-        let r = velour::render::random::sample(1, i, set);
-        let (s, c) = (r[0] * std::f32::consts::TAU).sin_cos();
-        let z = 1.0 - 2.0 * r[1];
-        glam::Vec3::new(c * (1.0 - z * z).sqrt(), z, s * (1.0 - z * z).sqrt()) * r[2].cbrt()
-    };
-    let ray = |i| {
-        let from = point(i, 0).normalize() * reach * 2.0;
-        (from, (point(i, 1) * reach - from).normalize())
-    };
-    (0..count).map(ray).collect()
-}
-
-#[test]
-#[ignore = "a measurement"]
-fn hierarchies() {
-    let folder = tempfile::tempdir().unwrap();
-    let mesh = folder.path().join("ball.obj");
-    std::fs::write(&mesh, ball(320)).unwrap();
-    let xml = folder.path().join("s.xml");
-    let text = r#"<World><ShaderGroup>shader matte l1;</ShaderGroup><Model filename="ball.obj"/></World>"#;
-    std::fs::write(&xml, text).unwrap();
-    let ball = scene(xml.to_str().unwrap());
-    for (name, scene, reach) in [("figure 1", &scene(FIGURE1), 5.0), ("ball", &ball, 1.0)] {
-        let rays = rays(60_000, reach);
-        for method in [Method::Wide, Method::Binary, Method::Wide, Method::Binary] {
-            let start = std::time::Instant::now();
-            let accel = Accel::with(&scene.geometry, method);
-            let built = start.elapsed().as_secs_f64();
-            let start = std::time::Instant::now();
-            let mut hits = 0;
-            for _ in 0..10 {
-                hits += rays.iter().filter(|(o, d)| accel.closest(*o, *d, u32::MAX).t < 1e9).count();
-            }
-            let rate = 10.0 * rays.len() as f64 / start.elapsed().as_secs_f64() * 1e-6;
-            let triangles = scene.geometry.primitives.len();
-            println!(
-                "{name} ({triangles}): {method:?} {rate:.2} M rays/s, {hits} hits, built in {:.0} ms",
-                built * 1e3
-            );
-        }
     }
 }
 
