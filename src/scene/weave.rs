@@ -65,7 +65,17 @@ pub struct Weave {
 impl Weave {
     /// The attributes it knows.
     pub const ATTRIBUTES: [&str; 12] = [
-        "corner", "edge_x", "edge_y", "warp", "weft", "segments", "sides", "pattern", "thickness", "folds", "depth",
+        "corner",
+        "edge_x",
+        "edge_y",
+        "warp",
+        "weft",
+        "segments",
+        "sides",
+        "pattern",
+        "thickness",
+        "folds",
+        "depth",
         "weft_group",
     ];
 

@@ -6,5 +6,6 @@ mod exact;
 mod files;
 mod furnace;
 mod materials;
+mod rays;
 mod shaders;
 mod speed;
