@@ -27,7 +27,7 @@ fn direction(i: u32, set: u32) -> Vec3 {
 fn soup(count: u32, scale: f32) -> Vec<Shape> {
     let shape = |i: u32| {
         let (a, x, y) = (number(i, 0), number(i, 1), number(i, 2));
-        let size = 0.5 * (random::sample(SEED, i, 3)[0] * 6.0 - 6.0).exp2();
+        let size = (random::sample(SEED, i, 3)[0] * 4.0 - 4.0).exp2();
         match i % 16 {
             0 => Shape::Sphere { center: a * scale, radius: 0.3 * size * scale },
             1 => Shape::Quad { corner: a * scale, edge_x: x * size * scale, edge_y: y * size * scale },
