@@ -159,7 +159,7 @@ fn ball(n: u32, scale: f32) -> Vec<Shape> {
     let point = |i: u32, j: u32| {
         let z = (1.0 - 2.0 * i as f32 / n as f32).clamp(-1.0, 1.0);
         let (sin, cos) = (TAU * (j % n) as f32 / n as f32).sin_cos();
-        let flat = if i % n == 0 { 0.0 } else { (1.0 - z * z).sqrt() };
+        let flat = if i.is_multiple_of(n) { 0.0 } else { (1.0 - z * z).sqrt() };
         Vec3::new(flat * cos, flat * sin, z) * scale + Vec3::splat(scale)
     };
     let mut shapes = Vec::new();
