@@ -50,6 +50,30 @@ fn every_mistake_has_a_place_and_a_message() {
         (r#"<Quad corner="0,0,0" edge_x="1,0,0" edge_y="0,0,0"/>"#, "s:2:1: error: this <Quad> has no area"),
         (r#"<Quad corner="0,0,0" edge_x="1,2,3" edge_y="2,4,6"/>"#, "s:2:1: error: this <Quad> has no area"),
         (r#"<Model filename="nowhere.obj"/>"#, "s:2:18: error: mesh `nowhere.obj` is not found\n  help: looked in ."),
+        (r#"<Weave corner="0,0,0" edge_x="1,0,0"/>"#, "s:2:1: error: <Weave> needs the attribute `edge_y`"),
+        (r#"<Weave corner="0,0,0" edge_x="1,0,0" edge_y="2,0,0"/>"#, "s:2:1: error: this <Weave> has no area\n  help:"),
+        (
+            r#"<Weave corner="0,0,0" edge_x="1,0,0" edge_y="0,0,1" warp="0"/>"#,
+            "s:2:59: error: `warp` of <Weave> is `0`: a whole number from 1 to 4096 expected",
+        ),
+        (
+            r#"<Weave corner="0,0,0" edge_x="1,0,0" edge_y="0,0,1" pattern="knit"/>"#,
+            "s:2:62: error: `pattern` of <Weave> is `knit`: `plain`, `twill` or `satin` expected",
+        ),
+        (
+            r#"<Weave corner="0,0,0" edge_x="1,0,0" edge_y="0,0,1" warp="4096" weft="4096"/>"#,
+            "s:2:1: error: this <Weave> would have 3221225472 triangles, 8000000 are the most\n  help: lower `warp`",
+        ),
+        (
+            r#"<Weave corner="0,0,0" edge_x="1,0,0" edge_y="0,0,1" weft_group="blue"/>"#,
+            "s:2:65: error: `weft_group` of <Weave> is `blue`: the name of a <ShaderGroup> above expected\n  help: give",
+        ),
+        (r#"<Flakes low="0,0,0" high="1,1,1"/>"#, "s:2:1: error: <Flakes> needs the attribute `size`"),
+        (r#"<Flakes low="0,0,0" high="1,-1,1" size="1"/>"#, "s:2:1: error: `low` of this <Flakes> is above `high`"),
+        (
+            r#"<Flakes low="0,0,0" high="1,1,1" size="1" count="9000000"/>"#,
+            "s:2:50: error: `count` of <Flakes> is `9000000`: a whole number from 1 to 8000000 expected",
+        ),
         (r#"<Camera dir="0,0,0"/>"#, "s:2:1: error: the camera looks nowhere"),
         (r#"<Camera dir="0,1,0"/>"#, "s:2:1: error: the camera's `up` is parallel"),
         (r#"<Camera fov="180"/>"#, "s:2:14: error: `fov` of <Camera> is `180`"),
@@ -214,4 +238,61 @@ fn child_elements_make_the_same_group_as_text() {
     assert_eq!(plain(&specs[0]), plain(&specs[1]));
     assert_eq!(specs[0].usage, Usage::Surface);
     assert_eq!(specs[0].connections[0].target_param, specs[1].connections[0].target_param);
+}
+
+/// The one triangle mesh of a line of XML, which comes after a sphere.
+fn made(line: &str) -> Scene {
+    let text = format!(
+        "<World><ShaderGroup name=\"b\">shader b l1;</ShaderGroup><ShaderGroup>shader a l1;</ShaderGroup>{line}</World>"
+    );
+    load(&text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn a_weave_is_closed_tubes_that_pass_over_and_under_each_other() {
+    let line = r#"<Weave corner="-1,0,1" edge_x="2,0,0" edge_y="0,0,-2" warp="4" weft="6" segments="4" sides="8"
+        thickness="1" weft_group="b"/>"#;
+    let scene = made(line);
+    let geometry = &scene.geometry;
+    assert_eq!(geometry.primitives.len(), 4 * 4 * 6 * 4 * 8);
+    let materials: Vec<u32> = geometry.objects.iter().map(|o| o.material).collect();
+    assert_eq!(materials, [1, 0], "the warp takes the last group, the weft the one that is named");
+    let total = |object: u32| {
+        let own = geometry.primitives.iter().filter(|p| p.object == object);
+        own.map(|p| f64::from(p.shape.area())).sum::<f64>()
+    };
+    for (object, o) in geometry.objects.iter().enumerate() {
+        assert!((total(object as u32) - f64::from(o.surface_area)).abs() < 1e-3, "{object}");
+    }
+    let (mut low, mut high) = (f32::MAX, f32::MIN);
+    for primitive in &geometry.primitives {
+        let Shape::Triangle { a, b, c } = primitive.shape else { panic!("not a triangle") };
+        let flat = (b - a).cross(c - a).normalize();
+        for n in geometry.normals[primitive.normals as usize] {
+            assert!((n.length() - 1.0).abs() < 1e-5 && n.dot(flat) > 0.5, "{n} on {flat}");
+        }
+        for uv in geometry.uvs[primitive.uvs as usize] {
+            assert!(uv.min_element() >= 0.0 && uv.max_element() <= 1.0, "{uv}");
+        }
+        (low, high) = (low.min(a.y), high.max(a.y));
+    }
+    // The nearer yarns are 1/3 apart: at a crossing the middle of one is 1/12 above the cloth, its top another 1/12.
+    assert!((high - 1.0 / 6.0).abs() < 0.02 && (low + high).abs() < 1e-3, "{low} to {high}");
+}
+
+#[test]
+fn flakes_lie_in_their_box_and_have_their_size() {
+    let scene = made(r#"<Flakes low="1,2,3" high="2,4,6" count="500" size="0.1"/>"#);
+    assert_eq!(scene.geometry.primitives.len(), 500);
+    for primitive in &scene.geometry.primitives {
+        let Shape::Triangle { a, b, c } = primitive.shape else { panic!("not a triangle") };
+        assert!((a.distance(b) - 0.1).abs() < 1e-5 && (b.distance(c) - 0.1).abs() < 1e-5);
+        let center = (a + b + c) / 3.0;
+        assert!(
+            center.cmpge(glam::vec3(1.0, 2.0, 3.0) - 1e-5).all()
+                && center.cmple(glam::vec3(2.0, 4.0, 6.0) + 1e-5).all()
+        );
+    }
+    let other = made(r#"<Flakes low="1,2,3" high="2,4,6" count="500" size="0.1" seed="2"/>"#);
+    assert_ne!(scene.geometry.primitives[0], other.geometry.primitives[0]);
 }

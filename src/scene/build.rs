@@ -13,8 +13,7 @@ use super::xml::Element;
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-const TAGS: [&str; 9] =
-    ["Option", "Camera", "Sphere", "Quad", "Model", "Weave", "Flakes", "Background", "ShaderGroup"];
+const TAGS: [&str; 9] = ["Option", "Camera", "Sphere", "Quad", "Model", "Weave", "Flakes", "Background", "ShaderGroup"];
 const OPTIONS: [&str; 5] = ["max_bounces", "rr_depth", "aa", "no_jitter", "show_globals"];
 const GROUP_TAGS: [&str; 3] = ["Parameter", "Shader", "ConnectShaders"];
 

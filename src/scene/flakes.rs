@@ -62,12 +62,7 @@ impl Flakes {
             // Lost to rounding: far away and small.
             if shape.area() > 0.0 {
                 area += f64::from(shape.area());
-                geometry.primitives.push(Primitive {
-                    shape,
-                    object,
-                    normals: Primitive::NONE,
-                    uvs: Primitive::NONE,
-                });
+                geometry.primitives.push(Primitive { shape, object, normals: Primitive::NONE, uvs: Primitive::NONE });
             }
         }
         geometry.objects.push(Object { material, surface_area: area as f32, place: place.clone() });

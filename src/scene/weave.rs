@@ -32,7 +32,7 @@ impl Pattern {
         }
     }
 
-    /// True where the warp is on top. Counted in wrapping numbers, as a yarn asks one crossing beyond both its ends.
+    /// True where the warp is on top; yarns ask one crossing beyond both their ends.
     fn warp_is_over(self, warp: i64, weft: i64) -> bool {
         match self {
             Pattern::Plain => (warp + weft).rem_euclid(2) == 0,
@@ -56,7 +56,7 @@ pub struct Weave {
     /// Sides of a yarn.
     sides: u32,
     pattern: Pattern,
-    /// Half a yarn's height, as a share of half the distance to the next yarn.
+    /// A yarn's height, as a share of half the distance to the next yarn.
     thickness: f32,
     folds: f32,
     depth: f32,
@@ -65,7 +65,17 @@ pub struct Weave {
 impl Weave {
     /// The attributes it knows.
     pub const ATTRIBUTES: [&str; 12] = [
-        "corner", "edge_x", "edge_y", "warp", "weft", "segments", "sides", "pattern", "thickness", "folds", "depth",
+        "corner",
+        "edge_x",
+        "edge_y",
+        "warp",
+        "weft",
+        "segments",
+        "sides",
+        "pattern",
+        "thickness",
+        "folds",
+        "depth",
         "weft_group",
     ];
 
@@ -125,7 +135,7 @@ impl Weave {
         }
     }
 
-    /// The cloth's middle at x and y in [0, 1], and its normal there, which the folds have not moved or turned yet.
+    /// The cloth's middle at x and y, which are 0 to 1 from edge to edge, folds and all.
     fn ground(&self, x: f32, y: f32) -> Vec3 {
         let normal = self.edge_x.cross(self.edge_y).normalize();
         // Folds run toward one corner and fade, so that they look laid, not milled.
@@ -185,7 +195,7 @@ impl Weave {
         let count = if along_x { self.warp } else { self.weft };
         let across = (yarn as f32 + 0.5) / count as f32;
         let ground = |a: f32, b: f32| if along_x { self.ground(a, b) } else { self.ground(b, a) };
-        // A step of a thousandth of a crossing: small beside a bend, large beside rounding.
+        // A step of a hundredth of a crossing: small beside a bend, large beside rounding.
         let e = 1e-2 / crossings.max(count as f32);
         let lengthwise = ground(along + e, across) - ground(along - e, across);
         let sidewise = ground(along, across + e) - ground(along, across - e);

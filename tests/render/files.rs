@@ -42,3 +42,30 @@ fn a_name_that_cannot_be_written_is_refused_before_rendering() {
     assert!(check("no-such-folder/picture.exr".as_ref()).unwrap_err().contains("no-such-folder"));
     assert!(check("picture.EXR".as_ref()).is_ok());
 }
+
+/// Scenes that are shown with many triangles, here with few, so that an unoptimised build renders them at once.
+#[test]
+fn shipped_scenes_of_many_triangles_render() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/scenes");
+    let cases = [
+        ("million", [("warp=\"74\"", "warp=\"6\""), ("weft=\"74\"", "weft=\"6\"")], 6 * 6 * 6 * 8 * 4 + 2),
+        ("lamps", [("warp=\"40\"", "warp=\"5\""), ("weft=\"48\"", "weft=\"4\"")], 5 * 4 * 5 * 8 * 4 + 1002),
+        ("layers", [("<World>", "<World>"), ("</World>", "</World>")], 5),
+    ];
+    for (name, fewer, primitives) in cases {
+        let mut text = std::fs::read_to_string(folder.join(format!("{name}.xml"))).unwrap();
+        for (many, few) in fewer {
+            assert!(text.contains(many), "{name}: {many}");
+            text = text.replace(many, few);
+        }
+        let source = velour::scene::SceneSource { name: name.into(), text, folder: folder.clone() };
+        let scene = velour::scene::Scene::from_source(&source, &[], &velour::scene::ShaderFiles::default())
+            .unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scene.geometry.primitives.len(), primitives, "{name}");
+        let settings = velour::render::Settings { width: 24, height: 16, samples: 4, ..Default::default() };
+        let settings = settings.with_options(&scene.options);
+        let image = velour::render::render(&scene, &settings, &velour::render::Silent).unwrap();
+        assert!(image.mean().iter().all(|m| *m > 0.005 && *m < 3.0), "{name}: {:?}", image.mean());
+        assert!(image.about.reports.is_empty(), "{name}: {:?}", image.about.reports);
+    }
+}

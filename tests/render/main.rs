@@ -7,5 +7,6 @@ mod exact;
 mod files;
 mod furnace;
 mod materials;
+mod rays;
 mod shaders;
 mod speed;

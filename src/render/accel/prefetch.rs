@@ -1,4 +1,8 @@
 //! The one unsafe call of the renderer: asks the cache for something that will be read soon.
+//!
+//! Decision (2026-11-22): an intrinsic, because there is no safe way to ask and a ray waits for memory most of its time:
+//! on a million triangles, in turns with a build without it, random rays went from 1.15 to 1.57 million a second, bounces
+//! from 1.9 to 2.4, camera rays stayed at 3.7; instead of reading ahead, which holds up what is behind it.
 
 /// Asks for all of `item`; changes nothing but time.
 #[inline(always)]

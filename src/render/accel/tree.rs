@@ -89,7 +89,9 @@ impl Tree {
     /// The tree over `geometry`, whose primitives reach as far as `magnitude` from the origin.
     pub fn new(geometry: &Geometry, magnitude: &[f32]) -> Self {
         if geometry.primitives.is_empty() {
-            return Tree::empty(0);
+            let mut tree = Tree::empty(0);
+            tree.nodes.push(Node::EMPTY);
+            return tree;
         }
         let pairs = pairs(geometry, magnitude);
         Opening::new(&pairs, geometry).run()
