@@ -4,8 +4,8 @@ use glam::Vec3;
 
 /// One of two words, picked by bits.
 ///
-/// An `if` whose losing side is what a column held before becomes a masked store, which takes some forty cycles a vector on
-/// AMD's processors: sampling a diffuse lobe took 7.6 times what it takes by hand with them, and takes 5.5 times so.
+/// An `if` whose losing side is what a column held before becomes a masked store, which is slow on AMD's
+/// processors: sampling a diffuse lobe took 7.6 times what it takes by hand with them, and takes 5.5 times so.
 #[inline(always)]
 pub fn pick_bits(condition: bool, yes: u32, no: u32) -> u32 {
     let mask = (condition as u32).wrapping_neg();
