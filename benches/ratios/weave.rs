@@ -54,16 +54,7 @@ fn pattern<const LIBM: bool>(p: Vec3, u: f32, v: f32) -> (Vec3, f32) {
     let pick = |a: f32, b: f32| shade * if above { a } else { b };
     let thread = Vec3::new(pick(WARP.x, WEFT.x), pick(WARP.y, WEFT.y), pick(WARP.z, WEFT.z));
     let r = 0.3 + 0.2 * uneven;
-    (
-        thread,
-        if r < 0.06 {
-            0.06
-        } else if r > 1.0 {
-            1.0
-        } else {
-            r
-        },
-    )
+    (thread, r.clamp(0.06, 1.0))
 }
 
 #[inline(always)]

@@ -6,6 +6,7 @@
 use super::settings::Layering;
 use crate::bsdf::sheen::albedo::AlbedoCurve;
 use crate::bsdf::{MAX_PARAMS, Scatter, Side, View, select};
+use crate::math::columns::{pick, pick_bits};
 use crate::math::frame::Frame;
 use glam::Vec3;
 use multiversion::multiversion;
@@ -252,9 +253,9 @@ pub fn sample_lanes<M: Scatter, S: Source<M>>(
         let frame = Frame { tangent: tangent.at(i), bitangent: bitangent.at(i), normal: normal.at(i) };
         let wi = frame.to_world(local);
         let mine = chosen[i] == lobe;
-        x[i] = select(mine, wi.x, x[i]);
-        y[i] = select(mine, wi.y, y[i]);
-        z[i] = select(mine, wi.z, z[i]);
+        x[i] = pick(mine, wi.x, x[i]);
+        y[i] = pick(mine, wi.y, y[i]);
+        z[i] = pick(mine, wi.z, z[i]);
     }
 }
 
@@ -457,17 +458,17 @@ pub fn layer_lanes(rule: Layering, from: LayerColumns<'_>, out: &mut [f32]) {
 
 /// One step of picking a lobe: lanes whose number falls into this lobe's part take it, others move on.
 #[multiversion(targets("x86_64+avx2"))]
-pub fn pick_lanes(lobe: u32, pick: &[f32], left: &mut [f32], rest: &mut [f32], chosen: &mut [u32]) {
+pub fn pick_lanes(lobe: u32, part: &[f32], left: &mut [f32], rest: &mut [f32], chosen: &mut [u32]) {
     let n = left.len();
-    let (pick, rest, chosen) = (&pick[..n], &mut rest[..n], &mut chosen[..n]);
+    let (part, rest, chosen) = (&part[..n], &mut rest[..n], &mut chosen[..n]);
     for i in 0..n {
         let open = left[i] >= 0.0;
-        let mine = open && left[i] < pick[i];
+        let mine = open & (left[i] < part[i]);
         // The number is used up to its place inside the part, and serves again as a fresh one.
-        rest[i] = select(mine, (left[i] / pick[i].max(f32::MIN_POSITIVE)).min(0.999_999_94), rest[i]);
-        chosen[i] = if mine { lobe } else { chosen[i] };
-        left[i] = select(mine, -1.0, left[i] - select(open, pick[i], 0.0));
-        left[i] = select(open && !mine, left[i].max(0.0), left[i]);
+        rest[i] = pick(mine, (left[i] / part[i].max(f32::MIN_POSITIVE)).min(0.999_999_94), rest[i]);
+        chosen[i] = pick_bits(mine, lobe, chosen[i]);
+        let after = (left[i] - part[i]).max(0.0);
+        left[i] = pick(mine, -1.0, pick(open, after, left[i]));
     }
 }
 
@@ -477,7 +478,8 @@ pub fn rest_lanes(none: u32, last: &[u32], rest: &mut [f32], chosen: &mut [u32])
     let n = chosen.len();
     let (last, rest) = (&last[..n], &mut rest[..n]);
     for i in 0..n {
-        rest[i] = select(chosen[i] == none, 0.999_999_94, rest[i]);
-        chosen[i] = if chosen[i] == none { last[i] } else { chosen[i] };
+        let open = chosen[i] == none;
+        rest[i] = pick(open, 0.999_999_94, rest[i]);
+        chosen[i] = pick_bits(open, last[i], chosen[i]);
     }
 }

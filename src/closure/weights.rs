@@ -1,7 +1,7 @@
 //! Weights on their way down the tree: a color for all lanes or a color a lane, and the lane loops that combine them.
 //!
 //! Decision (2026-11-22): the loops ask for lengths and kinds once a column, and test for numbers with whole words, because a
-//! function called for each lane and component, and a sum that keeps the order of its terms, took half of the time of
+//! function called for each lane and component, and sums that keep the order of their terms, took 28 % of the time of
 //! flattening; instead of one closure a lane, which is shorter.
 
 use super::tree::{Floats, Tree};

@@ -10,8 +10,8 @@
 //! | cell | [`cell`] | [0, 1] | constant in a cell |
 //! | hash | [`cell`] | [0, 1] | nowhere |
 //!
-//! Time in ns a lane under AVX2, one core of an AMD EPYC (benches/elementary.rs): perlin1 2.8, perlin2 5.2, perlin3 10, with its
-//! gradient 15, its vector variant 20, perlin4 21, simplex3 14, cell3 4.
+//! Time in ns a lane under AVX2, one core of an AMD EPYC (benches/ratios): perlin1 2.1, perlin2 4.0, perlin3 6.6, its vector
+//! variant 15, periodic 9.4, perlin4 17, simplex3 10, cell3 1.6, hash3 0.7.
 //!
 //! Continuous kinds give a [`Jet`]: the value and, when asked for, its gradient. `Jet<0>` has no gradient and costs
 //! none. Periodic variants take a [`Lattice`] that wraps cells; [`unsigned`] moves a signed noise to [0, 1].
