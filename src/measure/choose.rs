@@ -16,7 +16,7 @@ use std::fmt;
 /// Cost of a sheen lobe by its shadowing term, ns to evaluate a direction in batches of 128 lanes, softened. One core of a
 /// 2-core AMD EPYC with AVX2, the figure `visibility` of `velour chart`.
 const SHADOWING_COSTS: [(Shadowing, f64); 4] =
-    [(Shadowing::Ashikhmin, 8.7), (Shadowing::Exact, 9.9), (Shadowing::Series, 11.2), (Shadowing::Published, 20.0)];
+    [(Shadowing::Ashikhmin, 7.4), (Shadowing::Exact, 9.5), (Shadowing::Series, 11.2), (Shadowing::Published, 17.0)];
 
 /// Cost of an albedo, ns a direction, as the figure `albedo` of `velour chart` has it on the same machine.
 const ALBEDO_COSTS: [(SheenAlbedo, f64); 3] =

@@ -44,7 +44,7 @@ pub enum SheenAlbedo {
     /// A polynomial of 7 x 5 terms that errs by up to 8.0e-4. The default: layers cannot show more.
     #[default]
     Fit,
-    /// A polynomial of 13 x 9 terms that errs by up to 2.3e-5 (softened) or 2.7e-6 (not).
+    /// A polynomial of 13 x 9 terms that errs by up to 3.2e-5 (softened) or 3.6e-6 (not).
     Long,
 }
 

@@ -24,8 +24,8 @@ pub enum Shadowing {
     Published,
     /// Visibility of Ashikhmin and Premoze 2007 as real-time engines use it; gains energy for r < 0.21.
     Ashikhmin,
-    /// Smith's term computed from D itself, by a Chebyshev series of 10 terms that errs by at most 4e-6 of Lambda. Costs 1.1
-    /// times as much as the default for a whole lobe.
+    /// Smith's term computed from D itself, by a Chebyshev series of 10 terms that errs by at most 4e-6 of Lambda. A whole
+    /// lobe costs 1.2 times as much as by default.
     Series,
 }
 

@@ -42,7 +42,9 @@ impl Layout {
         let size = area(frame).max(1e-9);
         let inside = area(common(frame, self.area)) / size;
         let covered: f64 = self.taken.iter().map(|other| area(common(frame, *other))).sum();
-        covered / size + 10.0 * (1.0 - inside)
+        // A place two rings further out is better than the least overlap.
+        let least = if covered > 0.0 { 0.08 } else { 0.0 };
+        least + 2.0 * covered / size + 10.0 * (1.0 - inside)
     }
 }
 

@@ -17,7 +17,7 @@ struct Worst {
     one_way: f64,
 }
 
-/// Looks at a white sheen of all roughnesses from many sides; albedos come from the longest polynomial (2.3e-5).
+/// Looks at a white sheen of all roughnesses from many sides; albedos come from the longest polynomial (3.2e-5).
 fn worst(rule: Layering) -> Worst {
     let cosines: Vec<f64> = (1..=32).map(|k| (f64::from(k) / 32.0).powi(3)).collect();
     let mut out = Worst::default();

@@ -47,7 +47,7 @@ pub struct Effort {
 impl Effort {
     /// Next to nothing, for tests: costs mean little, errors are those of the quick chart at fewer places.
     pub fn tiny() -> Self {
-        Effort { laps: Laps { rounds: 3, turn: 1e-5 }, cosines: 13, steps: 16, cells: 8 }
+        Effort { laps: Laps { rounds: 3, turn: 1e-5 }, cosines: 13, steps: 24, cells: 8 }
     }
 
     /// Some seconds.

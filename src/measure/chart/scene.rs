@@ -37,7 +37,7 @@ impl Budget {
 
     /// Some minutes.
     pub fn full() -> Self {
-        Budget { size: [160, 64], reference: 8192, most: 128, images: 4, repeats: 5 }
+        Budget { size: [160, 64], reference: 4096, most: 128, images: 4, repeats: 5 }
     }
 }
 
