@@ -114,21 +114,26 @@ impl Lights {
     pub fn sample(&self, p: &Column3, from: &[u32], numbers: &[Vec<f32>; 4], out: &mut LightLanes) {
         out.resize(from.len());
         let mut block = LightBlock::new();
+        let one = self.primitives.len() == 1;
+        // A light that is alone is the same for all blocks.
+        (0..WIDTH)
+            .filter(|_| one)
+            .for_each(|k| block.load(k, &self.forms[0], self.chance[self.primitives[0] as usize]));
         for start in (0..from.len()).step_by(WIDTH) {
             let len = WIDTH.min(from.len() - start);
             let mut chosen = [0; WIDTH];
             for k in 0..len {
                 let lane = start + k;
-                let index = match self.primitives.len() {
-                    1 => 0,
-                    n => self.cumulative.partition_point(|c| *c <= numbers[2][lane]).min(n - 1),
-                };
-                out.primitive[lane] = self.primitives[index];
-                block.load(k, p.get(lane), &self.forms[index], [numbers[0][lane], numbers[1][lane]]);
-                block.usable[k] = u32::from(self.primitives[index] != from[lane]);
-                chosen[k] = index;
-                block.chance[k] = self.chance[self.primitives[index] as usize];
+                if !one {
+                    let index = self.cumulative.partition_point(|c| *c <= numbers[2][lane]);
+                    chosen[k] = index.min(self.primitives.len() - 1);
+                    block.load(k, &self.forms[chosen[k]], self.chance[self.primitives[chosen[k]] as usize]);
+                }
+                let primitive = self.primitives[chosen[k]];
+                out.primitive[lane] = primitive;
+                block.usable[k] = u32::from(primitive != from[lane]);
             }
+            block.look(p, [&numbers[0], &numbers[1]], start, len);
             flat_block(&mut block);
             for k in (0..len).filter(|_| self.any_round) {
                 let light = &self.forms[chosen[k]];
@@ -226,15 +231,26 @@ impl LightBlock {
         }
     }
 
+    /// Takes the light of lane `k`.
     #[inline(always)]
-    fn load(&mut self, k: usize, p: Vec3, light: &LightForm, [x, y]: [f32; 2]) {
-        set(&mut self.p, k, p);
+    fn load(&mut self, k: usize, light: &LightForm, chance: f32) {
         set(&mut self.a, k, light.form.a);
         set(&mut self.b, k, light.form.b);
         set(&mut self.c, k, light.form.c);
         set(&mut self.area, k, light.area);
-        (self.x[k], self.y[k]) = (x, y);
         self.triangle[k] = u32::from(light.triangle);
+        self.chance[k] = chance;
+    }
+
+    /// Takes the points that look at the lights, and the places on those.
+    #[inline(always)]
+    fn look(&mut self, p: &Column3, [x, y]: [&[f32]; 2], start: usize, len: usize) {
+        let lanes = start..start + len;
+        self.p[0][..len].copy_from_slice(&p.x[lanes.clone()]);
+        self.p[1][..len].copy_from_slice(&p.y[lanes.clone()]);
+        self.p[2][..len].copy_from_slice(&p.z[lanes.clone()]);
+        self.x[..len].copy_from_slice(&x[lanes.clone()]);
+        self.y[..len].copy_from_slice(&y[lanes]);
     }
 
     /// Does a sphere's lane over again; `on` says that the lane lies on it.

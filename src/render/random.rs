@@ -17,9 +17,9 @@ pub const CAMERA: u32 = 0;
 /// Which set of a bounce.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// x, y the point on a light; z which light; w the roulette.
+    /// x, y the point on a light; z which light.
     Light = 0,
-    /// x, y the direction; z which lobe.
+    /// x which lobe, and with y the direction; z what else a lobe chooses; w the roulette.
     Scatter = 1,
     /// x, y the direction toward the background.
     Sky = 2,

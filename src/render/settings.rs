@@ -73,7 +73,7 @@ impl Default for Settings {
             show_globals: 0,
             batch_width: crate::exec::MAX_LANES,
             tile_size: 16,
-            wave_size: 4096,
+            wave_size: 8192,
             closure: closure::Settings::default(),
         }
     }
