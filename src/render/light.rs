@@ -81,17 +81,19 @@ impl Lights {
         let floor = if total > 0.0 { 0.1 * total / count } else { 1.0 };
         let sum = total + floor * count;
         let mut lights = Lights { chance: vec![0.0; geometry.primitives.len()], ..Self::default() };
-        let mut running = 0.0f64;
+        let (mut running, mut before) = (0.0f64, 0.0f32);
         for &(primitive, power) in powers {
-            let before = running as f32;
             running += (clean(power) + floor) / sum;
             lights.primitives.push(primitive);
             let form = LightForm::new(&geometry.primitives[primitive as usize].shape);
             lights.any_round |= form.form.round;
             lights.forms.push(form);
-            lights.cumulative.push(running as f32);
-            // The chance is the difference of the rounded sums, which is exactly how often the search gives it.
-            lights.chance[primitive as usize] = running as f32 - before;
+            // Random numbers are multiples of 2^-23. With sums that are too, a light's chance, which is their difference,
+            // is exactly how often the search gives it; one of less than that may never be chosen, and has none.
+            let rounded = (running * 8_388_608.0).round() / 8_388_608.0;
+            lights.cumulative.push(rounded as f32);
+            lights.chance[primitive as usize] = rounded as f32 - before;
+            before = rounded as f32;
         }
         if let Some(last) = lights.cumulative.last_mut() {
             *last = 1.0;

@@ -69,10 +69,9 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     let start = Instant::now();
     let world = pool.install(|| World::new(scene, settings));
     let seconds_preparing = start.elapsed().as_secs_f64();
-    let tiles = Tile::count(settings);
     let shared = Mutex::new(Shared {
         film: Film::new(settings),
-        rounds: Rounds::new(settings, tiles, start),
+        rounds: Rounds::new(settings, start),
         dropped: Dropped::default(),
         rays: 0,
         reports: world.reports.clone(),
@@ -134,7 +133,7 @@ fn trace(
 
 /// Adds what a thread has found out of one tile to what all have.
 fn keep(shared: &mut Shared, world: &World, task: &Task, tile: &Tile, wave: &mut Wave, sums: &Sums) {
-    shared.film.add(task.tile, tile, sums, world.settings.halves());
+    shared.film.add(task.tile, tile, sums, world.settings.halves(), task.first..task.end);
     shared.rounds.done(task);
     shared.dropped.merge(&std::mem::take(&mut wave.dropped));
     shared.rays += std::mem::take(&mut wave.rays);

@@ -10,6 +10,7 @@
 
 use super::film::Film;
 use super::settings::Settings;
+use super::tile::Tile;
 use std::time::Instant;
 
 /// Samples of the first round.
@@ -32,21 +33,41 @@ pub struct Task {
 /// How far each tile has come.
 pub struct Rounds {
     taken: Vec<u32>,
+    /// Mean square error of each tile, at the last look; infinite before the first.
     errors: Vec<f64>,
+    /// Pixels of each tile.
+    pixels: Vec<f64>,
+    /// Tiles in a row of the picture.
+    across: usize,
     started: bool,
+    /// The first round is over.
+    looked: bool,
     deadline: Option<Instant>,
 }
 
 impl Rounds {
     /// Nothing is done yet. The clock of a time limit runs from `start`.
-    pub fn new(settings: &Settings, tiles: usize, start: Instant) -> Self {
+    pub fn new(settings: &Settings, start: Instant) -> Self {
         let deadline = settings.seconds.map(|s| start + std::time::Duration::from_secs_f64(s.min(1e9)));
-        Rounds { taken: vec![0; tiles], errors: vec![f64::INFINITY; tiles], started: false, deadline }
+        let tiles = Tile::count(settings);
+        let pixels = |number: usize| {
+            let tile = Tile::number(settings, number);
+            f64::from(tile.width) * f64::from(tile.height)
+        };
+        Rounds {
+            taken: vec![0; tiles],
+            errors: vec![f64::INFINITY; tiles],
+            pixels: (0..tiles).map(pixels).collect(),
+            across: settings.width.div_ceil(settings.tile_size) as usize,
+            started: false,
+            looked: false,
+            deadline,
+        }
     }
 
     /// True when the time is up; the first round is always done, or there would be no picture.
     pub fn late(&self) -> bool {
-        self.errors.first().is_some_and(|e| e.is_finite()) && self.deadline.is_some_and(|d| Instant::now() >= d)
+        self.looked && self.deadline.is_some_and(|d| Instant::now() >= d)
     }
 
     /// The tasks of the next round; none when all is done.
@@ -61,6 +82,7 @@ impl Rounds {
         }
         if std::mem::replace(&mut self.started, true) {
             self.errors = film.errors(settings);
+            self.looked = true;
         }
         if self.late() {
             return Vec::new();
@@ -80,17 +102,32 @@ impl Rounds {
         &self.taken
     }
 
-    /// Root of the mean square error over the picture, as it was at the last look; `None` when none was taken.
+    /// Root of the mean square error over the picture, as it was at the last look; `None` when there was none, or when
+    /// one sample a pixel leaves nothing to compare.
     pub fn noise(&self) -> Option<f64> {
-        let mean = self.errors.iter().sum::<f64>() / self.errors.len().max(1) as f64;
+        let sum: f64 = self.errors.iter().zip(&self.pixels).map(|(error, pixels)| error * pixels).sum();
+        let mean = sum / self.pixels.iter().sum::<f64>();
         mean.is_finite().then(|| mean.sqrt())
+    }
+
+    /// The error of a tile; that of its worst neighbour where its own is exactly zero, for two halves that have both
+    /// seen nothing say little about what there is to be seen.
+    fn error(&self, tile: usize) -> f64 {
+        if self.errors[tile] != 0.0 {
+            return self.errors[tile];
+        }
+        let (x, y) = (tile % self.across, tile / self.across);
+        let columns = x.saturating_sub(1)..(x + 2).min(self.across);
+        let rows = y.saturating_sub(1)..(y + 2).min(self.errors.len() / self.across);
+        let near = rows.flat_map(|row| columns.clone().map(move |column| row * self.across + column));
+        near.map(|tile| self.errors[tile]).fold(0.0, f64::max)
     }
 
     /// How much a tile wants more samples.
     fn gain(&self, settings: &Settings, tile: usize) -> f64 {
         match settings.noise {
-            Some(_) => self.errors[tile],
-            None => self.errors[tile] / f64::from(self.taken[tile].max(1)),
+            Some(_) => self.error(tile),
+            None => self.error(tile) / f64::from(self.taken[tile].max(1)),
         }
     }
 
@@ -99,7 +136,9 @@ impl Rounds {
         if let Some(noise) = settings.noise {
             return f64::from(noise) * f64::from(noise);
         }
-        let mut gains: Vec<f64> = (0..self.taken.len()).map(|tile| self.gain(settings, tile)).collect();
+        // Tiles that have had all they may get do not take part.
+        let open = (0..self.taken.len()).filter(|tile| self.taken[*tile] < settings.samples);
+        let mut gains: Vec<f64> = open.map(|tile| self.gain(settings, tile)).collect();
         gains.sort_unstable_by(f64::total_cmp);
         let median = gains.get(gains.len() / 2).copied().unwrap_or(0.0);
         // In the first round all gains are infinite, and all tiles go.
@@ -124,8 +163,8 @@ mod tests {
 
     #[test]
     fn rounds_grow_by_a_half_and_a_third() {
-        let settings = Settings { noise: Some(0.1), samples: 100, ..Settings::default() };
-        let mut rounds = Rounds::new(&settings, 1, Instant::now());
+        let settings = Settings { noise: Some(0.1), samples: 100, width: 16, height: 16, ..Settings::default() };
+        let mut rounds = Rounds::new(&settings, Instant::now());
         let mut ends = Vec::new();
         while rounds.taken[0] < settings.samples {
             let task = rounds.task(&settings, 0);
@@ -136,14 +175,28 @@ mod tests {
         assert_eq!(ends, [16, 24, 32, 48, 64, 96, 100]);
     }
 
+    /// Four tiles in a row, with a time.
+    fn four(samples: u32, taken: [u32; 4], errors: [f64; 4]) -> Vec<usize> {
+        let settings = Settings { seconds: Some(1e6), samples, width: 64, height: 16, ..Settings::default() };
+        let mut rounds = Rounds::new(&settings, Instant::now());
+        (rounds.taken, rounds.errors) = (taken.to_vec(), errors.to_vec());
+        let limit = rounds.limit(&settings);
+        let goes_on = |t: &usize| rounds.taken[*t] < samples && rounds.gain(&settings, *t) > limit;
+        (0..4).filter(goes_on).collect()
+    }
+
     #[test]
     fn with_a_time_the_worst_half_goes_on() {
-        let settings = Settings { seconds: Some(1e6), samples: 1000, ..Settings::default() };
-        let mut rounds = Rounds::new(&settings, 4, Instant::now());
-        rounds.taken = vec![16; 4];
-        rounds.errors = vec![0.0, 3.0, 2.0, 1.0];
-        let limit = rounds.limit(&settings);
-        let on: Vec<usize> = (0..4).filter(|t| rounds.gain(&settings, *t) > limit).collect();
-        assert_eq!(on, [1, 2]);
+        assert_eq!(four(1000, [16; 4], [0.5, 3.0, 2.0, 1.0]), [1, 2]);
+    }
+
+    #[test]
+    fn tiles_that_are_done_do_not_keep_the_others_from_going_on() {
+        assert_eq!(four(64, [64, 64, 16, 16], [100.0, 90.0, 0.2, 0.1]), [2]);
+    }
+
+    #[test]
+    fn a_tile_without_any_error_follows_its_neighbours() {
+        assert_eq!(four(1000, [16; 4], [3.0, 0.0, 0.0, 1.0]), [0, 1]);
     }
 }

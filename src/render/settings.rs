@@ -104,7 +104,7 @@ impl Settings {
 
     /// Says what cannot be rendered, if anything.
     pub fn check(&self) -> Result<(), String> {
-        if self.width == 0 || self.height == 0 || u64::from(self.width) * u64::from(self.height) > 1 << 30 {
+        if self.width == 0 || self.height == 0 || u64::from(self.width) * u64::from(self.height) > 1 << 27 {
             return Err(format!("an image of {} x {} pixels cannot be rendered", self.width, self.height));
         }
         if self.samples == 0 {

@@ -250,7 +250,7 @@ fn tangents(geometry: &Geometry, primitive: &Primitive, n: Vec3) -> (Vec3, Vec3)
 
 /// Derivatives from the ray's cone: two axes across the ray, as wide as the cone there, projected onto the surface.
 ///
-/// The camera's cone is one pixel wide. A bounce keeps the width it has and widens its growth (see `tile`), which is
+/// The camera's cone is one pixel wide. A bounce keeps the width it has and widens its growth (see `bounce`), which is
 /// cheap and errs toward blur. Source: the way testrender carries radius and spread.
 fn footprint(points: &mut Points, lane: usize, hit: &RayHitPoint, n: Vec3) {
     let i = hit.direction;

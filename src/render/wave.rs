@@ -223,10 +223,12 @@ impl Wave {
     fn background(&mut self, world: &World) {
         let (material, table) = match &world.sky {
             Sky::Constant(radiance) => {
-                self.missed.iter().for_each(|&i| {
+                // There is a background, and thus a material, where there is light.
+                let material = world.scene.background.map_or(0, |b| b.material as usize);
+                for &i in &self.missed {
                     let path = &mut self.paths[i as usize];
-                    path.radiance += path.throughput * *radiance;
-                });
+                    gather(path, path.throughput * *radiance, material, &mut self.dropped);
+                }
                 return;
             }
             Sky::Shader { material, table } => (*material, table),
@@ -314,11 +316,12 @@ pub fn emission_weight(world: &World, path: &Path) -> f32 {
     weight_of_found(world.settings.lights, path.pdf_solid_angle, other)
 }
 
-/// Adds to a path what is finite and drops what is not.
+/// Adds to a path what leaves it finite and drops what does not.
 #[inline]
 pub fn gather(path: &mut Path, contribution: Vec3, material: usize, dropped: &mut Dropped) {
-    if contribution.is_finite() {
-        path.radiance += contribution;
+    let sum = path.radiance + contribution;
+    if sum.is_finite() {
+        path.radiance = sum;
     } else {
         dropped.add(material);
     }

@@ -87,3 +87,44 @@ fn nonsense_is_refused() {
         assert!(Settings { seconds: Some(seconds), ..Settings::default() }.check().is_err());
     }
 }
+
+#[test]
+fn uneven_tiles_meet_without_a_seam() {
+    let truth = figure(|s| (s.samples, s.seed) = (2048, 77));
+    let uneven = figure(|s| (s.samples, s.noise, s.tile_size) = (2048, Some(0.004), 8));
+    let [fewest, most] = uneven.about.taken;
+    assert!(most >= 4 * fewest, "{fewest} to {most}");
+    let said = uneven.about.noise.unwrap();
+    let (mut edges, mut count) = (0.0, 0.0);
+    for y in 0..SIZE.1 {
+        for x in (0..SIZE.0).filter(|x| x % 8 == 0 || x % 8 == 7) {
+            let (a, b) = (uneven.pixel(x, y), truth.pixel(x, y));
+            edges += a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+            count += 3.0;
+        }
+    }
+    // Sums that counted by samples alone would move the edges of tiles by up to half a pixel.
+    assert!((edges / count).sqrt() < 1.5 * said, "{} at the edges, {said} in all", (edges / count).sqrt());
+}
+
+#[test]
+fn small_and_odd_pictures_are_whole() {
+    for size in [(1, 1), (1, 33), (17, 2)] {
+        for noise in [None, Some(0.05)] {
+            let image = figure(|s| ((s.width, s.height), s.samples, s.noise, s.alpha) = (size, 33, noise, true));
+            assert_eq!(image.pixels.len(), (size.0 * size.1 * 4) as usize);
+            assert!(image.pixels.iter().all(|p| p.is_finite()));
+            assert!(image.pixels.chunks(4).all(|p| (0.0..=1.0).contains(&p[3])));
+        }
+    }
+    let one = figure(|s| (s.samples, s.noise) = (1, Some(0.05)));
+    assert_eq!((one.about.noise, one.about.taken), (None, [1, 1]), "one sample tells nothing of its error");
+}
+
+#[test]
+fn a_noise_and_a_time_stop_at_whichever_comes_first() {
+    let image = figure(|s| (s.samples, s.noise, s.seconds) = (1 << 20, Some(0.05), Some(1e4)));
+    assert!(image.about.noise.unwrap() <= 0.05);
+    let image = figure(|s| (s.samples, s.noise, s.seconds) = (1 << 20, Some(1e-9), Some(0.2)));
+    assert!(image.about.noise.unwrap() > 1e-9);
+}
