@@ -39,6 +39,7 @@ pub struct Sweep {
     step_of: Vec<u32>,
     leaves_of: HashMap<(u32, u32), (u32, u32)>,
     emitters: Vec<(Weight, u32, bool, NodeId)>,
+    ready: Vec<(u32, Leaf)>,
 }
 
 impl Sweep {
@@ -114,7 +115,7 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
         mark_children(&mut lobes.sweep.in_top, tree, index);
     }
     // A leaf is made ready once for every medium it lies in.
-    let mut ready: Vec<(u32, Leaf)> = Vec::new();
+    let mut ready = std::mem::take(&mut lobes.sweep.ready);
     let mut at = lobes.sweep.heads[index as usize];
     while at != NONE {
         let entry = lobes.sweep.entries[at as usize];
@@ -151,6 +152,8 @@ fn visit(lobes: &mut Lobes, table: &ClosureTable, tree: &Tree, index: u32) {
             drop_lane(&mut lobes.dropped, (name, NodeId(index)), 0);
         }
     }
+    ready.clear();
+    lobes.sweep.ready = ready;
 }
 
 /// Marks what a node of a layer's top consists of.

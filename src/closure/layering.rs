@@ -8,6 +8,7 @@
 use super::batch::{
     LayerColumns, Triples, albedo_lanes, average_lanes, layer_lanes, sheen_albedo_lanes, top_albedo_lanes,
 };
+use super::curves::{Curves, curve_albedo_lanes, push_curves};
 use super::kinds::Kind;
 use super::kinds::with_source;
 use super::media::Media;
@@ -90,6 +91,9 @@ pub struct Layers {
     /// Where [`Layers::seen`] has the albedo of each surface toward the viewer, or [`NONE`].
     seen_at: Vec<u32>,
     seen: Vec<f32>,
+    /// Where [`Layers::curves`] has the albedo curves of each layer's sheen, or [`NONE`].
+    curves_at: Vec<u32>,
+    curves: Vec<Curves>,
     alpha_o: Vec<f32>,
     through: Vec<f32>,
     inverse_mean: Vec<f32>,
@@ -156,14 +160,22 @@ impl Layers {
         self.seen.clear();
         self.seen_at.clear();
         self.seen_at.resize(surfaces.list.len(), NONE);
+        self.curves.clear();
+        self.curves_at.clear();
         self.run_steps(surfaces, Side::View);
         for index in 0..self.list.len() {
             let layer = self.list[index];
+            let curves = match layer.top {
+                Top::Surface(top) => push_curves(surfaces, &surfaces.list[top as usize], &mut self.curves),
+                _ => None,
+            };
+            self.curves_at.push(curves.unwrap_or(NONE));
             let alpha = &mut self.alpha_o[index * n..(index + 1) * n];
             match (layer.top, media.get(layer.medium)) {
                 (Top::Boundary, Some(medium)) => alpha.copy_from_slice(&medium.pass_o),
                 _ => {
-                    top_albedo(&layer, surfaces, Side::View, &self.values, &mut self.scratch);
+                    let kept = kept(&self.curves, self.curves_at[index]);
+                    top_albedo(&layer, kept, surfaces, Side::View, &self.values, &mut self.scratch);
                     alpha_lanes(surfaces.column(layer.t), &self.scratch, alpha);
                     if let Top::Surface(surface) = layer.top {
                         self.seen_at[surface as usize] = self.seen.len() as u32;
@@ -214,7 +226,7 @@ impl Layers {
         for index in 0..self.list.len() {
             let layer = self.list[index];
             if matches!(layer.top, Top::Tree(_)) {
-                top_albedo(&layer, surfaces, Side::Fixed(cos), &self.values, &mut self.scratch);
+                top_albedo(&layer, None, surfaces, Side::Fixed(cos), &self.values, &mut self.scratch);
                 for (sum, a) in self.inverse_mean[index * n..].iter_mut().zip(&self.scratch) {
                     *sum += weight * a;
                 }
@@ -238,7 +250,8 @@ impl Layers {
                 continue;
             }
             if layer.rule != Layering::View {
-                top_albedo(layer, surfaces, Side::Light, &self.values, &mut self.scratch);
+                let kept = kept(&self.curves, self.curves_at[index]);
+                top_albedo(layer, kept, surfaces, Side::Light, &self.values, &mut self.scratch);
             }
             let (before, here) = self.scales.split_at_mut(index * n);
             let columns = LayerColumns {
@@ -320,13 +333,29 @@ fn column_or<'a>(store: &'a [f32], layer: u32, ones: &'a [f32]) -> &'a [f32] {
     if layer == NONE { ones } else { &store[layer as usize * n..(layer as usize + 1) * n] }
 }
 
-/// The albedo of what a layer consists of, without its t.
-fn top_albedo(layer: &Layer, surfaces: &Surfaces, side: Side, values: &[f32], out: &mut [f32]) {
+/// The curves from an offset on; none from [`NONE`] on.
+fn kept(curves: &[Curves], at: u32) -> Option<&[Curves]> {
+    curves.get(at as usize..)
+}
+
+/// The albedo of what a layer consists of, without its t; `kept` are the curves of its sheen, if they were.
+fn top_albedo(
+    layer: &Layer,
+    kept: Option<&[Curves]>,
+    surfaces: &Surfaces,
+    side: Side,
+    values: &[f32],
+    out: &mut [f32],
+) {
     let n = surfaces.lanes;
-    match layer.top {
-        Top::Surface(surface) => covering_albedo(surfaces, &surfaces.list[surface as usize], side, out),
-        Top::Boundary => out.fill(0.0),
-        Top::Tree(step) => {
+    match (layer.top, kept) {
+        (Top::Surface(surface), Some(curves)) => {
+            let cos = cosines(surfaces, &surfaces.list[surface as usize], side);
+            curve_albedo_lanes(curves, &cos, out);
+        }
+        (Top::Surface(surface), None) => covering_albedo(surfaces, &surfaces.list[surface as usize], side, out),
+        (Top::Boundary, _) => out.fill(0.0),
+        (Top::Tree(step), _) => {
             for (o, v) in out.iter_mut().zip(&values[step as usize * n..(step as usize + 1) * n]) {
                 *o = v.clamp(0.0, 1.0);
             }

@@ -1,12 +1,14 @@
 //! The closure tree: print it, flatten it to weighted lobes, scale bases by albedo, evaluate and sample.
 
 mod batch;
+mod curves;
 mod flatten;
 mod kinds;
 mod layering;
 mod leaves;
 pub mod lobes;
 mod media;
+mod normals;
 pub mod print;
 mod sampling;
 pub mod settings;

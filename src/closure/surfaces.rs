@@ -7,11 +7,10 @@
 //! Decision (2026-11-22): such normals are bent instead of flipped, because a flipped one points into the surface and
 //! turns black under the geometric test, and instead of rejected, which leaves black spots on bump maps.
 
-use super::batch::{
-    Each, NormalColumns, Same, Triples, Views, localise_lanes, normal_lanes, tangent_lanes, view_lanes,
-};
+use super::batch::{Each, Same, Triples, Views, localise_lanes, view_lanes};
 use super::kinds::{Kind, with_source};
 use super::media::Media;
+use super::normals::{NormalColumns, normal_lanes, tangent_lanes};
 use super::settings::SheenAlbedo;
 use super::weights::all_finite;
 use crate::bsdf::{MAX_PARAMS, Params, Scatter};
@@ -116,6 +115,8 @@ pub struct Surfaces {
     pub list: Vec<Surface>,
     /// Columns of parameters and gates.
     pub data: Vec<f32>,
+    /// What is in use of the views; the rest is kept, for clearing it would cost as much as writing it.
+    views_used: usize,
     views: Vec<f32>,
     given: Column3,
     frames: Vec<FrameColumns>,
@@ -142,7 +143,7 @@ impl Surfaces {
         self.lanes = lanes;
         self.list.clear();
         self.data.clear();
-        self.views.clear();
+        self.views_used = 0;
         self.frames_used = 0;
     }
 
@@ -270,14 +271,15 @@ impl Surfaces {
 
     /// Computes what the newest surface derives from the viewer.
     fn look(&mut self) {
-        let (n, at) = (self.lanes, self.views.len());
+        let (n, at) = (self.lanes, self.views_used);
         let Some(mut surface) = self.list.pop() else { return };
         surface.view = at as u32;
         if !surface.kind.is_delta() {
             let mut views = std::mem::take(&mut self.views);
             let wo = Triples::of(&self.frames[surface.frame as usize].wo);
             with_source!(self, surface, |M, source| {
-                views.resize(at + n * M::VIEW, 0.0);
+                self.views_used = at + n * M::VIEW;
+                views.resize(self.views_used.max(views.len()), 0.0);
                 view_lanes::<M, _>(source, wo, &mut views[at..]);
             });
             self.views = views;

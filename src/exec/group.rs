@@ -21,6 +21,8 @@ pub struct Group {
     pub(super) table: Arc<ClosureTable>,
     pub(super) locate: Locate,
     inputs: Arc<Vec<(Reg, Input)>>,
+    /// See [`Group::spent`].
+    spent: Arc<Vec<bool>>,
     models: Arc<Vec<Model>>,
 }
 
@@ -33,10 +35,10 @@ impl std::fmt::Debug for Group {
 impl Group {
     /// A group of an optimised program.
     pub fn new(program: Program, table: Arc<ClosureTable>, locate: Locate) -> Self {
-        let mut read = vec![false; program.regs.len()];
+        let mut read = vec![0u32; program.regs.len()];
         let mut models = Vec::new();
         visit_instrs(&program.body, &mut |instr| {
-            instr.reads(|reg| read[reg.0 as usize] = true);
+            instr.reads(|reg| read[reg.0 as usize] += 1);
             if let Instr::Leaf { closure, .. } = instr {
                 let model = table.get(*closure).model;
                 if !models.contains(&model) {
@@ -47,16 +49,26 @@ impl Group {
         mark_conditions(&program.body, &mut read);
         for output in &program.outputs {
             if let OutputValue::Regs(regs) = &output.value {
-                regs.iter().for_each(|reg| read[reg.0 as usize] = true);
+                regs.iter().for_each(|reg| read[reg.0 as usize] += 1);
             }
         }
         let inputs = program.regs.iter().enumerate().filter_map(|(i, info)| match info.source {
-            Source::Input(input) if read[i] => Some((Reg(i as u32), input)),
+            Source::Input(input) if read[i] > 0 => Some((Reg(i as u32), input)),
             _ => None,
         });
         let inputs = Arc::new(inputs.collect());
+        let mut spent = vec![false; program.regs.len()];
+        mark_spent(&program, &program.body, &read, &mut spent);
         let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
-        Group { id, program: Arc::new(program), table, locate, inputs, models: Arc::new(models) }
+        Group {
+            id,
+            program: Arc::new(program),
+            table,
+            locate,
+            inputs,
+            spent: Arc::new(spent),
+            models: Arc::new(models),
+        }
     }
 
     /// The program.
@@ -72,6 +84,12 @@ impl Group {
     /// The inputs it reads and the registers they go to.
     pub fn inputs(&self) -> &[(Reg, Input)] {
         &self.inputs
+    }
+
+    /// Is the register read by nothing but a move of floats that follows it in its block? The move may take its column, which the
+    /// next run of the block writes anew before it is read.
+    pub(super) fn spent(&self, reg: Reg) -> bool {
+        self.spent[reg.0 as usize]
     }
 
     /// The scattering models that can occur.
@@ -117,21 +135,45 @@ impl Group {
     }
 }
 
-fn mark_conditions(block: &Block, read: &mut [bool]) {
+fn mark_conditions(block: &Block, read: &mut [u32]) {
     for node in block {
         match node {
             Node::If(condition, a, b) => {
-                read[condition.0 as usize] = true;
+                read[condition.0 as usize] += 1;
                 mark_conditions(a, read);
                 mark_conditions(b, read);
             }
             Node::Loop { head, condition, body, .. } => {
-                read[condition.0 as usize] = true;
+                read[condition.0 as usize] += 1;
                 mark_conditions(head, read);
                 mark_conditions(body, read);
             }
             Node::Scope(_, body) => mark_conditions(body, read),
             Node::Instr(_) | Node::Leave(_) => {}
+        }
+    }
+}
+
+/// Marks the registers that [`Group::spent`] tells of.
+fn mark_spent(program: &Program, block: &Block, read: &[u32], spent: &mut [bool]) {
+    let mut written = Vec::new();
+    for node in block {
+        match node {
+            Node::Instr(instr) => {
+                if let Instr::Move { dst, src, .. } = instr {
+                    let (to, from) = (program.regs[dst.0 as usize], program.regs[src.0 as usize]);
+                    let columns = to.kind == Kind::Float && from.kind == Kind::Float && to.uniform == from.uniform;
+                    let own = from.source == Source::Code && !from.mutable && written.contains(src);
+                    spent[src.0 as usize] = columns && own && read[src.0 as usize] == 1;
+                }
+                instr.writes(|reg| written.push(reg));
+            }
+            Node::If(_, a, b) => [a, b].into_iter().for_each(|block| mark_spent(program, block, read, spent)),
+            Node::Loop { head, body, .. } => {
+                [head, body].into_iter().for_each(|block| mark_spent(program, block, read, spent));
+            }
+            Node::Scope(_, body) => mark_spent(program, body, read, spent),
+            Node::Leave(_) => {}
         }
     }
 }

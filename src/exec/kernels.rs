@@ -103,26 +103,35 @@ pub fn float_to_int(dst: &mut [i32], a: &[f32]) {
     map1(dst, a, fold::float_to_int);
 }
 
-/// The element of a column that may stand for all lanes.
-#[inline(always)]
-fn at<T: Copy>(column: &[T], lane: usize, single: bool) -> T {
-    if single { column[0] } else { column[lane] }
-}
-
 /// `dst = c != 0 ? a : b`
 #[inline(always)]
 fn choose<T: Copy>(dst: &mut [T], c: &[i32], a: &[T], b: &[T]) {
     let n = dst.len();
-    let (c1, a1, b1) = (c.len() == 1, a.len() == 1, b.len() == 1);
-    if !c1 && !a1 && !b1 {
-        let (c, a, b) = (&c[..n], &a[..n], &b[..n]);
-        for i in 0..n {
-            dst[i] = if c[i] != 0 { a[i] } else { b[i] };
-        }
-        return;
+    if c.len() == 1 {
+        let from = if c[0] != 0 { a } else { b };
+        return if from.len() == 1 { dst.fill(from[0]) } else { dst.copy_from_slice(&from[..n]) };
     }
-    for i in 0..n {
-        dst[i] = if at(c, i, c1) != 0 { at(a, i, a1) } else { at(b, i, b1) };
+    // A loop for each shape: one that asks for shapes lane by lane does not become SIMD.
+    let lanes = dst.iter_mut().zip(&c[..n]);
+    match (a.len() == 1, b.len() == 1) {
+        (true, true) => {
+            let (a, b) = (a[0], b[0]);
+            lanes.for_each(|(d, &c)| *d = if c != 0 { a } else { b });
+        }
+        (true, false) => {
+            let a = a[0];
+            lanes.zip(&b[..n]).for_each(|((d, &c), &b)| *d = if c != 0 { a } else { b });
+        }
+        (false, true) => {
+            let b = b[0];
+            lanes.zip(&a[..n]).for_each(|((d, &c), &a)| *d = if c != 0 { a } else { b });
+        }
+        (false, false) => {
+            let (a, b, c) = (&a[..n], &b[..n], &c[..n]);
+            for i in 0..n {
+                dst[i] = if c[i] != 0 { a[i] } else { b[i] };
+            }
+        }
     }
 }
 

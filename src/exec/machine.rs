@@ -244,15 +244,20 @@ macro_rules! fill {
 
 impl Run<'_> {
     fn block(&mut self, block: &Block) {
+        self.budget = self.budget.saturating_sub(block.len() as u64);
         for node in block {
             match node {
-                // Most instructions are of these two kinds, which cannot end a lane's way through the block.
+                // Most instructions are of these three kinds, which cannot end a lane's way through the block.
                 Node::Instr(Instr::Binary(op, d, a, b)) => {
                     self.binary(*op, *d, *a, *b);
                     continue;
                 }
                 Node::Instr(Instr::Unary(op, d, a)) => {
                     self.unary(*op, *d, *a);
+                    continue;
+                }
+                Node::Instr(Instr::Move { dst, src, masked }) => {
+                    self.assign(*dst, *src, *masked);
                     continue;
                 }
                 Node::Instr(instr) => self.instr(instr),
@@ -382,14 +387,12 @@ impl Run<'_> {
     }
 
     fn unary(&mut self, op: crate::ir::op::Unary, d: Reg, a: Reg) {
-        self.budget = self.budget.saturating_sub(1);
         if let Ok([dst, a]) = self.regs.floats.get_disjoint_mut([d.0 as usize, a.0 as usize]) {
             k::unary(op, dst, a);
         }
     }
 
     fn binary(&mut self, op: crate::ir::op::Binary, d: Reg, a: Reg, b: Reg) {
-        self.budget = self.budget.saturating_sub(1);
         let floats = &mut self.regs.floats;
         if let Ok([dst, a, b]) = floats.get_disjoint_mut([d.0 as usize, a.0 as usize, b.0 as usize]) {
             k::binary(op, dst, a, b);
@@ -400,7 +403,6 @@ impl Run<'_> {
     }
 
     fn instr(&mut self, instr: &Instr) {
-        self.budget = self.budget.saturating_sub(1);
         match instr {
             Instr::Unary(op, d, a) => self.unary(*op, *d, *a),
             Instr::Binary(op, d, a, b) => self.binary(*op, *d, *a, *b),
@@ -455,6 +457,9 @@ impl Run<'_> {
 
     fn assign(&mut self, dst: Reg, src: Reg, masked: bool) {
         let partial = masked && self.active < self.n;
+        if !partial && self.group.spent(src) {
+            return self.regs.floats.swap(dst.0 as usize, src.0 as usize);
+        }
         match self.group.program.kind(dst) {
             Kind::Closure => self.assign_closure(dst, src, partial),
             Kind::Float => fill!(self.floats[dst], |c| {

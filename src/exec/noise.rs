@@ -3,6 +3,7 @@
 use super::machine::Run;
 use crate::ir::op::{Noise, NoiseKind};
 use crate::ir::program::Reg;
+use crate::math::columns::copy_block;
 use crate::math::noise::cell::*;
 use crate::math::noise::perlin::*;
 use crate::math::noise::simplex::*;
@@ -35,7 +36,7 @@ fn write<const D: usize, const O: usize>(
         for (slot, column) in x.iter_mut().zip(columns) {
             match column.len() {
                 1 => *slot = [column[0]; BLOCK],
-                _ => slot[..count].copy_from_slice(&column[first..first + count]),
+                _ => copy_block::<BLOCK>(&mut slot[..count], &column[first..first + count]),
             }
         }
         // Lanes beyond the last one are computed as well: a loop of a known length is worth more than they cost.
@@ -50,9 +51,9 @@ fn write<const D: usize, const O: usize>(
             }
         }
         for o in 0..O {
-            out[o][first..first + count].copy_from_slice(&values[o][..count]);
+            copy_block::<BLOCK>(&mut out[o][first..first + count], &values[o][..count]);
             for d in 0..D {
-                out[O + o * D + d][first..first + count].copy_from_slice(&gradients[o][d][..count]);
+                copy_block::<BLOCK>(&mut out[O + o * D + d][first..first + count], &gradients[o][d][..count]);
             }
         }
     }

@@ -18,6 +18,17 @@ pub fn pick(condition: bool, yes: f32, no: f32) -> f32 {
     f32::from_bits(pick_bits(condition, yes.to_bits(), no.to_bits()))
 }
 
+/// Copies the lanes of a block of at most `BLOCK`, which both slices have.
+///
+/// A whole block has a known length, so that it takes a few moves and no call.
+#[inline(always)]
+pub fn copy_block<const BLOCK: usize>(to: &mut [f32], from: &[f32]) {
+    match (<&mut [f32; BLOCK]>::try_from(&mut *to), <&[f32; BLOCK]>::try_from(from)) {
+        (Ok(to), Ok(from)) => *to = *from,
+        _ => to.copy_from_slice(from),
+    }
+}
+
 /// Three columns that hold one triple a lane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Column3 {

@@ -23,7 +23,7 @@ use std::str::FromStr;
 /// Coefficients of a curve in the cube root of the cosine.
 pub const CURVE: usize = 13;
 /// Coefficients that the fitted exact terms use.
-const SHORT: usize = 7;
+pub const SHORT: usize = 7;
 /// Coefficients that the cheapest evaluation uses.
 const SHORTEST: usize = 4;
 /// Coefficients in log r of the long curves.
@@ -147,6 +147,23 @@ impl AlbedoCurve {
         let mut c = [0.0; CURVE];
         for i in 0..CURVE {
             c[i] = chebyshev::<SURFACE_COLUMNS>(&surface[i], s);
+        }
+        AlbedoCurve { c }
+    }
+
+    /// The coefficients of a curve of an exact term, to keep them.
+    #[inline(always)]
+    pub fn terms(&self) -> [f32; SHORT] {
+        let c = &self.c;
+        [c[0], c[1], c[2], c[3], c[4], c[5], c[6]]
+    }
+
+    /// The curve of coefficients that [`AlbedoCurve::terms`] gave.
+    #[inline(always)]
+    pub fn of(terms: [f32; SHORT]) -> Self {
+        let mut c = [0.0; CURVE];
+        for i in 0..SHORT {
+            c[i] = terms[i];
         }
         AlbedoCurve { c }
     }
