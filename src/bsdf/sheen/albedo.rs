@@ -161,11 +161,8 @@ impl AlbedoCurve {
     /// The curve of coefficients that [`AlbedoCurve::terms`] gave.
     #[inline(always)]
     pub fn of(terms: [f32; SHORT]) -> Self {
-        let mut c = [0.0; CURVE];
-        for i in 0..SHORT {
-            c[i] = terms[i];
-        }
-        AlbedoCurve { c }
+        let [a, b, c, d, e, f, g] = terms;
+        AlbedoCurve { c: [a, b, c, d, e, f, g, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] }
     }
 
     /// The albedo at a cosine, clamped to 0..1. `LONG` curves have all coefficients, the others 7.
