@@ -66,7 +66,7 @@ pub struct Ray {
     pub reach: f32,
     /// The primitive it starts on, or `NOTHING`.
     pub skip: u32,
-    /// The primitive it goes to, which is not in its way, or `NOTHING`.
+    /// The primitive it goes to, which it does not meet, or `NOTHING`.
     pub target: u32,
 }
 
@@ -195,23 +195,23 @@ impl Accel {
         }
     }
 
-    /// Gives `hits` the closest hit of each ray, up to its reach and not counting what it skips. `Few` knows only
-    /// paths and shadow rays: by that method nothing is hit here.
+    /// Gives `hits` the closest hit of each ray, up to its reach and not counting what it skips or goes to.
     pub fn closest(&self, rays: &[Ray], hits: &mut Vec<Hit>) {
         hits.clear();
         hits.resize(rays.len(), Hit::NONE);
-        if let Hierarchy::Wide(tree) = &self.hierarchy {
-            walk::closest(tree, rays, hits);
+        match &self.hierarchy {
+            Hierarchy::Few(few) => few::closest(few, rays, hits),
+            Hierarchy::Wide(tree) => walk::closest(tree, rays, hits),
         }
     }
 
-    /// Gives `blocked` whether anything but what it skips is in the way of each ray, short of its reach. `Few` as in
-    /// `closest`.
+    /// Gives `blocked` whether anything but what it skips or goes to is in the way of each ray, short of its reach.
     pub fn any(&self, rays: &[Ray], blocked: &mut Vec<bool>) {
         blocked.clear();
         blocked.resize(rays.len(), false);
-        if let Hierarchy::Wide(tree) = &self.hierarchy {
-            walk::any(tree, rays, blocked);
+        match &self.hierarchy {
+            Hierarchy::Few(few) => few::any(few, rays, blocked),
+            Hierarchy::Wide(tree) => walk::any(tree, rays, blocked),
         }
     }
 
