@@ -124,7 +124,7 @@ fn a_few_primitives_are_met_alike_with_and_without_a_hierarchy() {
         let shapes: Vec<Shape> = soup(400, 1.0).into_iter().filter(flat).take(count).collect();
         let (few, wide) = (Accel::new(&geometry(&shapes)), Accel::with(&geometry(&shapes), Method::Wide));
         assert!(few.bytes() == 0 && wide.bytes() > 0, "both are by one method");
-        let mut rays = rays(4003, 1.0);
+        let mut rays = rays(20_003, 1.0);
         let found = closest(&wide, &rays);
         for (i, ray) in rays.iter_mut().enumerate() {
             // Up to the first hit or about there; from what is met, or to it; and as they are.
