@@ -234,9 +234,10 @@ fn images_follow_the_tolerance() {
     assert!(fine <= 1e-4, "{fine}");
     assert!(coarse <= 1e-2, "{coarse}");
     assert!(published > 5.0 * fine.max(1e-4), "{published}");
-    // The coarse bound too would be passed by methods that are too far off.
+    // On this scene no term differs by 1e-2, so that bound alone proves nothing. A tighter one is failed by the terms that
+    // the coarse pick passes over: it measured 4.2e-5, the published fit 1.1e-3, Ashikhmin's term 3.7e-3.
     let ashikhmin = mean_difference(ClosureSettings { shadowing: Shadowing::Ashikhmin, ..ClosureSettings::default() });
-    assert!(published.max(ashikhmin) > 1e-2, "{published} {ashikhmin}");
+    assert!(coarse <= 5e-4 && published > 5e-4 && ashikhmin > 5e-4, "{coarse} {published} {ashikhmin}");
 }
 
 fn velour(arguments: &[&str], folder: &Path) -> Output {
