@@ -164,8 +164,8 @@ type Costs = [f32; WIDTH - 1];
 
 const MANY: u8 = LANES as u8 + 1;
 
-/// What a block costs, where a node costs 1. An estimate from the work: four triangles side by side against eight boxes
-/// and the sorting of those met. Answers do not depend on it, and no search for the best value was made.
+/// What a block costs, where a node costs 1. Chosen; no measurement of it is recorded. It shapes the tree, never an
+/// answer.
 const COST_OF_BLOCK: f32 = 0.6;
 
 impl<'a> Opening<'a> {
