@@ -296,3 +296,18 @@ fn flakes_lie_in_their_box_and_have_their_size() {
     let other = made(r#"<Flakes low="1,2,3" high="2,4,6" count="500" size="0.1" seed="2"/>"#);
     assert_ne!(scene.geometry.primitives[0], other.geometry.primitives[0]);
 }
+
+#[test]
+fn flakes_of_two_seeds_have_none_in_common_however_many() {
+    let corners = |seed: u32| {
+        let scene = made(&format!(r#"<Flakes low="0,0,0" high="1,1,1" count="200000" size="0.01" seed="{seed}"/>"#));
+        let corner = |shape: Shape| {
+            let Shape::Triangle { a, .. } = shape else { panic!("not a triangle") };
+            a.to_array().map(f32::to_bits)
+        };
+        scene.geometry.primitives.iter().map(|p| corner(p.shape)).collect::<std::collections::HashSet<_>>()
+    };
+    let (one, two) = (corners(1), corners(2));
+    assert!(one.len() > 199_000 && two.len() > 199_000, "blocks of one seed differ too");
+    assert!(one.is_disjoint(&two));
+}

@@ -1,9 +1,10 @@
 //! Scenes of a few spheres and quads: no hierarchy, every primitive against blocks of sixteen rays at once.
 //!
-//! On the scene of figure 1 (seven primitives) a hierarchy is one node and costs more to walk than the primitives cost
-//! to test; see `accel::Method` for the figures. Rays are the lanes, so that the nearest hit is a select, not a search.
+//! On the scene of figure 1 (seven primitives) a hierarchy is one node, whose boxes cost about as much to test as what
+//! is in them. Rays are the lanes, so that the nearest hit is a select, not a search. The formulas are those of
+//! `accel/shape.rs`, term by term, so that both methods give the same answers.
 
-use super::accel::NOTHING;
+use super::accel::{Hit, NOTHING, Ray};
 use super::shadow::ShadowRay;
 use super::wave::Path;
 use crate::scene::{Geometry, Shape};
@@ -73,6 +74,27 @@ impl Block {
         (self.t[k], self.skip[k], self.id[k]) = (reach, skip, NOTHING);
     }
 
+    /// Takes `rays` into the first lanes, each to meet what is nearer than its reach, or as near if `at_reach` says so.
+    #[inline(always)]
+    fn load_rays(&mut self, rays: &[Ray], at_reach: bool) {
+        for (k, ray) in rays.iter().enumerate() {
+            let reach = if at_reach { ray.reach.next_up() } else { ray.reach };
+            self.load(k, ray.origin, ray.direction, reach, ray.skip);
+            self.target[k] = ray.target;
+        }
+    }
+
+    /// What the ray of a lane has met. A lane keeps the surface coordinates of a quad behind a nearer sphere.
+    #[inline(always)]
+    fn hit(&self, few: &Few, k: usize) -> Hit {
+        let (t, primitive) = (self.t[k], self.id[k]);
+        match few.shapes.get(primitive as usize) {
+            None => Hit::NONE,
+            Some(Shape::Sphere { .. }) => Hit { t, primitive, u: 0.0, v: 0.0 },
+            Some(_) => Hit { t, primitive, u: self.u[k], v: self.v[k] },
+        }
+    }
+
     #[inline(always)]
     fn meet_all(&mut self, few: &Few) {
         for (id, shape) in few.shapes.iter().enumerate() {
@@ -85,7 +107,7 @@ impl Block {
         }
     }
 
-    /// The formulas are those of `accel::sphere`.
+    /// As `sphere` of `accel/shape.rs`, with selects for its branches.
     #[inline(always)]
     fn sphere(&mut self, center: Vec3, r: f32, id: u32) {
         let (mut along, mut left) = ([0.0; WIDTH], [0.0; WIDTH]);
@@ -117,7 +139,7 @@ impl Block {
         }
     }
 
-    /// The formulas are those of `accel::quad`.
+    /// As `quad` of `accel/shape.rs`, with selects for its branches.
     #[inline(always)]
     // `contains` asks one question after the other, which lanes cannot.
     #[allow(clippy::manual_range_contains)]
@@ -170,5 +192,31 @@ pub fn unoccluded(few: &Few, rays: &[ShadowRay], clear: &mut Vec<u32>) {
         block.meet_all(few);
         let free = (0..part.len()).filter(|k| block.id[*k] == NOTHING);
         clear.extend(free.map(|k| (number * WIDTH + k) as u32));
+    }
+}
+
+/// Gives `hits` the closest hit of each ray.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+pub fn closest(few: &Few, rays: &[Ray], hits: &mut [Hit]) {
+    let mut block = Block::empty();
+    for (rays, hits) in rays.chunks(WIDTH).zip(hits.chunks_mut(WIDTH)) {
+        block.load_rays(rays, true);
+        block.meet_all(few);
+        for (k, hit) in hits.iter_mut().enumerate() {
+            *hit = block.hit(few, k);
+        }
+    }
+}
+
+/// Gives `blocked` whether anything is in the way of each ray.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+pub fn any(few: &Few, rays: &[Ray], blocked: &mut [bool]) {
+    let mut block = Block::empty();
+    for (rays, blocked) in rays.chunks(WIDTH).zip(blocked.chunks_mut(WIDTH)) {
+        block.load_rays(rays, false);
+        block.meet_all(few);
+        for (k, blocked) in blocked.iter_mut().enumerate() {
+            *blocked = block.id[k] != NOTHING;
+        }
     }
 }

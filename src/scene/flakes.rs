@@ -4,6 +4,7 @@ use super::error::{Place, SceneError};
 use super::geometry::{Geometry, Object, Primitive, Shape};
 use super::weave::MOST_TRIANGLES;
 use super::xml::Element;
+use crate::math::noise::lookup3::hash2;
 use glam::Vec3;
 use std::f32::consts::TAU;
 
@@ -46,8 +47,9 @@ impl Flakes {
         let object = geometry.objects.len() as u32;
         let mut area = 0.0;
         for i in 0..self.count {
-            let r = sobol_burley::sample_4d(i % (1 << 16), 0, self.seed.wrapping_add(i >> 16));
-            let q = sobol_burley::sample_4d(i % (1 << 16), 1, self.seed.wrapping_add(i >> 16));
+            // The sequence ends after 2^16 points. Hashed, the next block's seed is not that of another element.
+            let seed = hash2(self.seed, i >> 16);
+            let [r, q] = [0, 1].map(|set| sobol_burley::sample_4d(i % (1 << 16), set, seed));
             let center = self.low + (self.high - self.low) * Vec3::new(r[0], r[1], r[2]);
             let z = 1.0 - 2.0 * q[0];
             let (sin, cos) = (TAU * q[1]).sin_cos();

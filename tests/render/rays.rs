@@ -116,6 +116,60 @@ fn something_is_in_the_way_exactly_when_the_closest_hit_is() {
     assert!(blocked.iter().all(|b| !b));
 }
 
+#[test]
+fn a_few_primitives_are_met_alike_with_and_without_a_hierarchy() {
+    let flat = |s: &Shape| !matches!(s, Shape::Triangle { .. });
+    let mut hits = 0;
+    for count in [1, 7, 24] {
+        let shapes: Vec<Shape> = soup(400, 1.0).into_iter().filter(flat).take(count).collect();
+        let (few, wide) = (Accel::new(&geometry(&shapes)), Accel::with(&geometry(&shapes), Method::Wide));
+        assert!(few.bytes() == 0 && wide.bytes() > 0, "both are by one method");
+        let mut rays = rays(20_003, 1.0);
+        let found = closest(&wide, &rays);
+        for (i, ray) in rays.iter_mut().enumerate() {
+            // Up to the first hit or about there; from what is met, or to it; and as they are.
+            match i % 5 {
+                0 => ray.reach = found[i].t,
+                1 => ray.reach = found[i].t * [1.0 - 1e-6, 1.0 + 1e-6, 0.5, 2.0][i / 5 % 4],
+                2 => ray.skip = found[i].primitive,
+                3 => ray.target = found[i].primitive,
+                _ => (),
+            }
+        }
+        let found = closest(&few, &rays);
+        assert_eq!(found, closest(&wide, &rays));
+        hits += found.iter().filter(|hit| hit.primitive != NOTHING).count();
+        assert!(rays.iter().zip(&found).all(|(ray, hit)| hit.primitive == NOTHING || hit.primitive != ray.target));
+        let (mut by_few, mut by_wide) = (Vec::new(), Vec::new());
+        few.any(&rays, &mut by_few);
+        wide.any(&rays, &mut by_wide);
+        assert_eq!(by_few, by_wide);
+        let expected: Vec<bool> = rays.iter().zip(&found).map(|(ray, hit)| hit.t < ray.reach).collect();
+        assert_eq!(by_few, expected);
+    }
+    assert!(hits > 500, "only {hits} hits, which prove little");
+}
+
+#[test]
+fn what_a_ray_goes_to_is_not_its_closest_hit_whatever_its_form() {
+    let ahead = |z: f32| Vec3::new(-1.0, -1.0, z);
+    let forms = |z: f32| {
+        [
+            Shape::Sphere { center: Vec3::new(0.0, 0.0, z), radius: 0.5 },
+            Shape::Quad { corner: ahead(z), edge_x: Vec3::X * 2.0, edge_y: Vec3::Y * 2.0 },
+            Shape::Triangle { a: ahead(z), b: ahead(z) + Vec3::X * 4.0, c: ahead(z) + Vec3::Y * 4.0 },
+        ]
+    };
+    for (near, far) in forms(2.0).into_iter().zip(forms(4.0)) {
+        for method in [Method::Few, Method::Wide] {
+            let accel = Accel::with(&geometry(&[near, far]), method);
+            let ray = Ray::new(Vec3::new(0.01, 0.02, 0.0), Vec3::Z);
+            let to = |target: u32| closest(&accel, &[Ray { target, ..ray }])[0].primitive;
+            assert_eq!((to(NOTHING), to(0), to(1)), (0, 1, 0), "{near:?} by {method:?}");
+        }
+    }
+}
+
 /// Distance and weights of b and c by Cramer's rule in double precision.
 fn exact(shape: &Shape, ray: &Ray) -> Option<(f64, f64, f64)> {
     let Shape::Triangle { a, b, c } = *shape else { return None };

@@ -5,7 +5,7 @@ use super::lanes::{Curve, curve_lanes};
 use super::race::{Runner, race};
 use super::tables::{Axes, Interpolation, Table, nodes};
 use super::truth::{ROUGHNESSES, albedos, cosines, viewer};
-use super::{Effort, point};
+use super::{Effort, MEDIANS, point};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD, SheenAlbedo};
 use crate::bsdf::sheen::reference::Model;
 use crate::bsdf::sheen::{EXACT, Sheen};
@@ -173,11 +173,12 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         title: "Directional albedo of the sheen: cost against error".to_owned(),
         cost: "ns an albedo, 128 lanes of one roughness at a time".to_owned(),
         error: "largest error of the albedo".to_owned(),
-        meaning: "Error: the largest difference from the directional albedo integrated in f64 (softened exact term, F = 1, with the fitted Lambda, which is 7e-5 of the longest polynomial's error) for \
+        meaning: format!(
+            "{MEDIANS} Error: the largest difference from the directional albedo integrated in f64 (softened exact term, F = 1, with the fitted Lambda, which is 7e-5 of the longest polynomial's error) for \
                   roughness 0.06 to 1 and cosines 1e-4 to 1. Tables have that many cells in the cube root of the cosine \
                   and half as many in the logarithm of roughness, or in cosine and roughness themselves (plain axes). \
                   The rational fit of MaterialX is held against its own model, Charlie's D with Ashikhmin's visibility, cut at 1."
-            .to_owned(),
+        ),
         join: Join::Front,
         points,
     }

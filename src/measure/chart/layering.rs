@@ -3,7 +3,7 @@
 use super::figure::{Figure, Join, Point};
 use super::race::race;
 use super::truth::ROUGHNESSES;
-use super::{Effort, closures, point};
+use super::{Effort, MEDIANS, closures, point};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, LONG_METHOD, SheenAlbedo};
 use crate::bsdf::sheen::reference::average;
 use crate::closure::{Layering, Settings};
@@ -80,11 +80,12 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         title: "Rules of layering: cost against energy and reciprocity".to_owned(),
         cost: "ns to evaluate a sheen over Lambert, 128 lanes at a time".to_owned(),
         error: "largest error, below 1e-4 shown as 0".to_owned(),
-        meaning: "Three errors, each the worst over roughness 0.06 to 1 and all cosines, for a white sheen (softened exact \
+        meaning: format!(
+            "{MEDIANS} Three errors, each the worst over roughness 0.06 to 1 and all cosines, for a white sheen (softened exact \
                   term): how far the albedo of sheen over a white Lambertian base is from 1; what a mirror under it sends back \
                   beyond 1; and how much the scale of the base changes when light and viewer trade places. Only `min` \
                   never gains and is reciprocal."
-            .to_owned(),
+        ),
         join: Join::Front,
         points,
     }

@@ -67,6 +67,9 @@ fn point(group: &str, method: &str, cost: Cost, error: f64) -> Point {
     Point { group: group.to_owned(), method: method.to_owned(), cost: median, spread, error, front: false }
 }
 
+/// What a cost is in figures whose methods are timed in turns.
+const MEDIANS: &str = "Cost: the median of interleaved rounds, with its quartiles.";
+
 /// What measures a figure.
 type Measure = fn(&Effort) -> Result<Figure, String>;
 

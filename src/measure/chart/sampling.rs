@@ -3,7 +3,7 @@
 use super::figure::{Figure, Join, Point};
 use super::race::race;
 use super::truth::{directions, viewer};
-use super::{Effort, closures, point};
+use super::{Effort, MEDIANS, closures, point};
 use crate::bsdf::sheen::normals::ByNormals;
 use crate::bsdf::sheen::{EXACT, Sheen};
 use crate::bsdf::{Scatter, params};
@@ -55,10 +55,11 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         title: "Sampling of the sheen: cost of a sample against its variance".to_owned(),
         cost: "ns a sample with weight and density, 128 lanes at a time".to_owned(),
         error: "relative variance of f cos / pdf".to_owned(),
-        meaning: "Error: the variance of one sample's weight over the square of its mean, by quadrature of (f cos)² / pdf, mean \
+        meaning: format!(
+            "{MEDIANS} Error: the variance of one sample's weight over the square of its mean, by quadrature of (f cos)² / pdf, mean \
                   over the viewer's cosines 0.1, 0.35, 0.6 and 0.85; softened exact term. \"ltc\" is the transformed cosine \
                   with 10 % uniform (default), \"uniform\" the paper's hemisphere, \"normals\" the half vector."
-            .to_owned(),
+        ),
         join: Join::Front,
         points,
     }

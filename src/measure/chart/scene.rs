@@ -101,8 +101,7 @@ pub fn scene_figure(scene: &Scene, budget: &Budget, progress: &dyn Fn(usize, usi
             let fastest = times.iter().copied().fold(f64::INFINITY, f64::min);
             let cost = Cost { median: fastest, ..summary(times) };
             let last = image + 1 == budget.images;
-            let efficiency = short(1.0 / (error * cost.median));
-            let label = if last { format!("{name}: {efficiency}") } else { String::new() };
+            let label = if last { label(name, error * cost.median) } else { String::new() };
             // A line is a setting, so the group that gives it its color is the setting.
             points.push(super::point(name, &label, cost, error));
         }
@@ -157,13 +156,19 @@ fn difference(a: &Image, b: &Image) -> f64 {
     squares.sum::<f64>() / a.pixels.len().max(1) as f64
 }
 
-/// The error of the defaults over that of uniform sampling without light samples, at equal time.
+/// The name of a setting with its efficiency, which an image without error has not.
+fn label(name: &str, error_seconds: f64) -> String {
+    if error_seconds > 0.0 { format!("{name}: {}", short(1.0 / error_seconds)) } else { name.to_owned() }
+}
+
+/// The error of the defaults over that of uniform sampling without light samples, at equal time; empty when either is 0,
+/// as for an image that is black.
 ///
 /// The errors of a line fall as one over time, so the product of both compares settings at any time.
 fn equal_time(points: &[Point]) -> String {
     let product = |name: &str| points.iter().rfind(|p| p.group == name).map(|p| p.cost * p.error);
     match (product("defaults"), product("uniform sheen, no light samples")) {
-        (Some(ours), Some(plain)) => {
+        (Some(ours), Some(plain)) if ours > 0.0 && plain > 0.0 => {
             format!(
                 "At equal time the defaults have {} times the error of uniform sampling without light samples.",
                 short(ours / plain)

@@ -33,11 +33,10 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\"\""))
 }
 
-/// A section a figure: what its error means, its picture, and a table in which the front is set bold.
+/// A section a figure: what its cost and its error mean, its picture, and a table in which the front is set bold.
 pub fn markdown(figures: &[Figure], machine: &str) -> String {
     let mut out = format!(
-        "# Speed against accuracy\n\nMeasured on: {machine}.\n\nCosts are medians of interleaved rounds, with their \
-         quartiles. A method in bold lies on the front: none of its group is both cheaper and at least as exact.\n"
+        "# Speed against accuracy\n\nMeasured on: {machine}.\n\nA method in bold lies on the front: none of its group is both cheaper and at least as exact.\n"
     );
     for figure in figures {
         let name = figure.name;

@@ -3,7 +3,7 @@
 use super::figure::{Figure, Join, Point};
 use super::race::race;
 use super::truth::{ROUGHNESSES, albedos, directions, viewer};
-use super::{Effort, closures, point};
+use super::{Effort, MEDIANS, closures, point};
 use crate::bsdf::sheen::reference::Model;
 use crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, SERIES, Sheen};
 use crate::bsdf::{Scatter, params};
@@ -62,11 +62,12 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         title: "Visibility term of the sheen: cost of the lobe against error of its energy".to_owned(),
         cost: "ns to evaluate the lobe and its density, 128 lanes at a time".to_owned(),
         error: "largest error of the directional albedo".to_owned(),
-        meaning: "Error: the largest difference of the directional albedo (F = 1) from that of Smith's \
+        meaning: format!(
+            "{MEDIANS} Error: the largest difference of the directional albedo (F = 1) from that of Smith's \
                   term with the exact Lambda, integrated in f64, for roughness 0.06 to 1 and cosines 0.01 to 0.9. The lobe is \
                   evaluated in f32 as the engine does. Ashikhmin's visibility is 1 / (4 (ci + co - ci co)), the term of \
                   Lambda = 1 / c - 1."
-            .to_owned(),
+        ),
         join: Join::Front,
         points,
     }

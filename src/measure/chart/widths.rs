@@ -47,8 +47,8 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         title: "Width of a batch: cost of a lane".to_owned(),
         cost: "lanes of a batch".to_owned(),
         error: "ns a lane".to_owned(),
-        meaning: "No error: every width gives the same bits. The horizontal number is the width of a batch, the vertical one the \
-                  median cost of a lane."
+        meaning: "No cost and no error: every width gives the same bits. The horizontal number is the width of a batch, the vertical one the \
+                  median cost of a lane over interleaved rounds."
             .to_owned(),
         join: Join::Lines,
         points,

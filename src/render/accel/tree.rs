@@ -164,7 +164,8 @@ type Costs = [f32; WIDTH - 1];
 
 const MANY: u8 = LANES as u8 + 1;
 
-/// What a block costs, where a node costs 1. Measured: see `super`.
+/// What a block costs, where a node costs 1. Chosen; no measurement of it is recorded. It shapes the tree, never an
+/// answer.
 const COST_OF_BLOCK: f32 = 0.6;
 
 impl<'a> Opening<'a> {

@@ -219,13 +219,14 @@ fn walk<const ANY: bool>(tree: &Parts, ray: &Ray, stack: &mut [u64]) -> Hit {
         } else {
             let leaf = &tree.analytic[(current ^ ANALYTIC) as usize];
             let (t, u, v) = leaf.intersect(ray.origin, ray.direction, ray.skip);
-            if ANY {
-                if t < best.t && leaf.id != ray.target {
+            // What the ray goes to is not in its way, as in `triangles`.
+            if leaf.id != ray.target {
+                if !ANY {
+                    take(&mut best, t, leaf.id, u, v);
+                    limit = best.t * LATE;
+                } else if t < best.t {
                     return Hit { t, primitive: leaf.id, u, v };
                 }
-            } else {
-                take(&mut best, t, leaf.id, u, v);
-                limit = best.t * LATE;
             }
         }
         loop {
