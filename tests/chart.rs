@@ -228,16 +228,15 @@ fn images_follow_the_tolerance() {
         let sum: f64 = image.pixels.iter().zip(&exact.pixels).map(|(a, b)| f64::from((a - b).abs())).sum();
         sum / image.pixels.len() as f64
     };
-    let fine = mean_difference(picked(1e-4).closure);
+    // At 1e-4 all picks are the most exact ones, and the picture would be compared with itself.
+    let fine = mean_difference(picked(1e-3).closure);
     let coarse = mean_difference(picked(1e-2).closure);
-    let published = mean_difference(ClosureSettings { shadowing: Shadowing::Published, ..ClosureSettings::default() });
-    assert!(fine <= 1e-4, "{fine}");
-    assert!(coarse <= 1e-2, "{coarse}");
-    assert!(published > 5.0 * fine.max(1e-4), "{published}");
-    // On this scene no term differs by 1e-2, so that bound alone proves nothing. A tighter one is failed by the terms that
-    // the coarse pick passes over: it measured 4.2e-5, the published fit 1.1e-3, Ashikhmin's term 3.7e-3.
-    let ashikhmin = mean_difference(ClosureSettings { shadowing: Shadowing::Ashikhmin, ..ClosureSettings::default() });
-    assert!(coarse <= 5e-4 && published > 5e-4 && ashikhmin > 5e-4, "{coarse} {published} {ashikhmin}");
+    assert!(fine > 0.0 && fine <= 1e-4, "{fine}");
+    // The terms that are passed over fail the bound: it measured 4.2e-5, the published fit 1.1e-3, Ashikhmin's 3.7e-3.
+    for term in [Shadowing::Published, Shadowing::Ashikhmin] {
+        let other = mean_difference(ClosureSettings { shadowing: term, ..ClosureSettings::default() });
+        assert!(coarse <= 5e-4 && other > 5e-4, "{term}: {other} beside {coarse}");
+    }
 }
 
 fn velour(arguments: &[&str], folder: &Path) -> Output {
