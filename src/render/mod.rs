@@ -19,7 +19,7 @@
 //!
 //! An image depends on scene, seed and sample count. It does not depend on thread count, batch width, wave size or tile
 //! order: a path draws its numbers by pixel, sample and bounce, adds up its own light in order, and a pixel adds up its
-//! samples in order. The size of a tile shows as good as never, see [`film`]. A render that stops at a noise depends on
+//! samples in order. The size of a tile shows as good as never, see `film`. A render that stops at a noise depends on
 //! the tile size as well, one that stops at a time on the machine.
 
 pub mod accel;
