@@ -58,6 +58,20 @@ fn the_uniform_sampler_of_sheen_passes() {
     assert!(report.passed(), "{}", failures(&report).join("\n"));
 }
 
+/// At index 1 a boundary lets everything straight through, a lobe of one direction, beside a reflection of nothing that is
+/// still picked now and then: what the straight one passes must not depend on how often it happened to be picked.
+#[test]
+fn lobes_of_one_direction_are_measured_without_noise() {
+    let subject = closure("dielectric_bsdf", false, Settings::default());
+    for seed in 0..8 {
+        let report = run(&[&subject], &Effort { sampled: vec![0.5], integrated: vec![], seed, ..Effort::quick() });
+        let straight = report.lines.iter().filter(|line| line.label.contains("ior 1,"));
+        let energy: Vec<f64> =
+            straight.filter(|line| line.finding.check == Check::Energy).map(|line| line.finding.value).collect();
+        assert!(!energy.is_empty() && energy.iter().all(|e| (e - 1.0).abs() < 3e-4), "seed {seed}: {energy:?}");
+    }
+}
+
 /// What is spoiled of a sound closure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Spoil {

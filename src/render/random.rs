@@ -19,7 +19,7 @@ pub const CAMERA: u32 = 0;
 pub enum Use {
     /// x, y the point on a light; z which light.
     Light = 0,
-    /// x, y the direction; z which lobe, and what else a lobe chooses; w the roulette.
+    /// x which lobe, and with y the direction; z what else a lobe chooses; w the roulette.
     Scatter = 1,
     /// x, y the direction toward the background.
     Sky = 2,

@@ -174,7 +174,7 @@ fn delta_lobes_are_picked_by_their_part() {
     assert_eq!(evaluate(&mut lobes, 1, Vec3::Z).pdf, [0.0]);
     let (mut counts, mut out, mut random) = ([0; 6], Samples::default(), Random(SEED));
     for _ in 0..10_000 {
-        lobes.sample(&Column3::splat(Vec3::new(0.1, 0.2, random.number()), 1), &mut out);
+        lobes.sample(&Column3::splat(Vec3::new(random.number(), 0.2, 0.1), 1), &mut out);
         counts[out.event[0] as usize] += 1;
         assert!((out.weight.x[0] - 1.0).abs() < 1e-5);
     }

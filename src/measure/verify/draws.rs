@@ -41,11 +41,11 @@ pub fn draw(scatterer: &mut dyn Scatterer, count: usize, even: bool, random: &mu
     let batches = count.div_ceil(LANES);
     for batch in 0..batches {
         for lane in 0..LANES {
-            let mut third = random.number();
+            let mut first = random.number();
             if even {
-                third = ((batch * LANES + lane) as f32 + third) / (batches * LANES) as f32;
+                first = ((batch * LANES + lane) as f32 + first) / (batches * LANES) as f32;
             }
-            xi.set(lane, Vec3::new(random.number(), random.number(), third.min(0.999_999_94)));
+            xi.set(lane, Vec3::new(first.min(0.999_999_94), random.number(), random.number()));
         }
         scatterer.sample(&xi, &mut samples);
         scatterer.evaluate(&samples.wi, &mut evaluation);

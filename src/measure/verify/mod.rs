@@ -129,12 +129,12 @@ fn judge(report: &mut Report) {
     }
 }
 
-/// All findings of one variant. What a first look condemns, or calls very unlikely, is looked at again with more directions
+/// All findings of one variant. What a first look condemns, or might, is looked at again with more directions
 /// and other samples, and that verdict holds: a wrong lobe fails twice, an edge that an integral passed over does not.
 pub fn examine(subject: &dyn Subject, variant: usize, effort: &Effort) -> Vec<Finding> {
     let first = examine_once(subject, variant, effort);
     let doubtful = |finding: &Finding| match finding.check {
-        Check::ChiSquare => finding.value < 1e-4,
+        Check::ChiSquare => finding.value < LEVEL,
         _ => finding.verdict == Verdict::Fail,
     };
     if first.iter().any(doubtful) { examine_once(subject, variant, &effort.closer()) } else { first }
