@@ -131,10 +131,10 @@ impl GroupBuilder {
         self
     }
 
-    /// Compiles without folding, dead-code removal and uniform values. For tests and comparisons.
+    /// Compiles without folding, dead-code removal, uniform values and fused operations. For tests and comparisons.
     pub fn unoptimized(mut self) -> Self {
         self.lower.simplify = false;
-        self.optimize = OptimizeOptions { dead_code: false, uniform: false };
+        self.optimize = OptimizeOptions { dead_code: false, uniform: false, fuse: false };
         self
     }
 

@@ -46,10 +46,56 @@ fn map2<T: Copy, U: Copy>(dst: &mut [U], a: &[T], b: &[T], f: impl Fn(T, T) -> U
     }
 }
 
+/// Runs `f` over three columns, of which the first two are not both one number.
+#[inline(always)]
+fn map3(dst: &mut [f32], a: &[f32], b: &[f32], c: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
+    let n = dst.len();
+    if c.len() == 1 {
+        let c = c[0];
+        return map2(dst, a, b, |a, b| f(a, b, c));
+    }
+    let c = &c[..n];
+    if a.len() == 1 {
+        let (a, b) = (a[0], &b[..n]);
+        for i in 0..n {
+            dst[i] = f(a, b[i], c[i]);
+        }
+    } else if b.len() == 1 {
+        let (a, b) = (&a[..n], b[0]);
+        for i in 0..n {
+            dst[i] = f(a[i], b, c[i]);
+        }
+    } else {
+        let (a, b) = (&a[..n], &b[..n]);
+        for i in 0..n {
+            dst[i] = f(a[i], b[i], c[i]);
+        }
+    }
+}
+
 /// Expands to a match with one lane loop a variant, so that each loop is compiled for its own operation.
 macro_rules! per_variant {
     ($op:expr, $enum:ident [$($variant:ident)*], |$known:ident| $body:expr) => {
         match $op { $($enum::$variant => { const $known: $enum = $enum::$variant; $body })* }
+    };
+}
+
+/// Expands to a match with one lane loop a pair of operations, and what is done with any other pair.
+macro_rules! per_pair {
+    ($op:expr, [$($first:ident)*] $seconds:tt, |$known:ident| $body:expr, $other:expr) => {
+        match $op.first {
+            $(Binary::$first => per_pair!($op, $first $seconds, |$known| $body, $other),)*
+            _ => $other,
+        }
+    };
+    ($op:expr, $first:ident [$($second:ident $swapped:literal)*], |$known:ident| $body:expr, $other:expr) => {
+        match ($op.second, $op.swapped) {
+            $((Binary::$second, $swapped) => {
+                const $known: Pair = Pair { first: Binary::$first, second: Binary::$second, swapped: $swapped };
+                $body
+            })*
+            _ => $other,
+        }
     };
 }
 
@@ -64,6 +110,23 @@ pub fn unary(op: Unary, dst: &mut [f32], a: &[f32]) {
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
 pub fn binary(op: Binary, dst: &mut [f32], a: &[f32], b: &[f32]) {
     per_variant!(op, Binary [Add Sub Mul Div Mod Pow Atan2 Min Max Step], |OP| map2(dst, a, b, |a, b| fold::binary(OP, a, b)));
+}
+
+/// `dst = (a first b) second c`
+#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
+pub fn fused(op: Pair, dst: &mut [f32], a: &[f32], b: &[f32], c: &[f32]) {
+    if a.len() == 1 && b.len() == 1 {
+        return apart(op, &mut [0.0], dst, [a, b, c]);
+    }
+    per_pair!(op, [Add Sub Mul Div]
+        [Add false Sub false Sub true Mul false Div false Div true Min false Min true Max false Max true],
+        |OP| map3(dst, a, b, c, |a, b, c| fold::pair(OP, a, b, c)), apart(op, &mut vec![0.0; dst.len()], dst, [a, b, c]));
+}
+
+/// The same as two instructions with `t` in between. The optimizer makes no other pairs than those that have a loop.
+fn apart(op: Pair, t: &mut [f32], dst: &mut [f32], [a, b, c]: [&[f32]; 3]) {
+    binary(op.first, t, a, b);
+    if op.swapped { binary(op.second, dst, c, t) } else { binary(op.second, dst, t, c) }
 }
 
 /// `dst = a op b`, an int
@@ -178,4 +241,33 @@ pub fn narrow(out: &mut [i32], mask: &[i32], c: &[i32], wanted: bool) -> usize {
         count += *o;
     }
     count as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pair_gives_the_bits_of_its_operations_one_after_the_other() {
+        use Binary::*;
+        let ends = [0.0, -0.0, 1.0, -3.5, 1e-40, f32::MAX, f32::INFINITY, -f32::INFINITY, f32::NAN, 0.1, 7.0];
+        let (n, all) = (ends.len().pow(3), |stride: usize| move |i: usize| ends[i / stride % ends.len()]);
+        let columns = [1, ends.len(), ends.len().pow(2)].map(|stride| (0..n).map(all(stride)).collect::<Vec<f32>>());
+        for (first, second) in
+            [Add, Sub, Mul, Div, Pow].into_iter().flat_map(|f| [Add, Sub, Mul, Div, Min, Max].map(|s| (f, s)))
+        {
+            // Which columns are one number for all lanes.
+            for (swapped, shape) in [false, true].into_iter().flat_map(|s| (0..8).map(move |shape| (s, shape))) {
+                let op = Pair { first, second, swapped };
+                let [a, b, c] =
+                    [0, 1, 2].map(|i| if shape >> i & 1 == 1 { &columns[i][5 * n / 7..][..1] } else { &columns[i] });
+                let (mut together, mut t, mut one_by_one) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+                fused(op, &mut together, a, b, c);
+                apart(op, &mut t, &mut one_by_one, [a, b, c]);
+                // Which not-a-number an operation gives is not defined.
+                let same = |x: f32, y: f32| x.to_bits() == y.to_bits() || x.is_nan() && y.is_nan();
+                assert!(together.iter().zip(&one_by_one).all(|(&x, &y)| same(x, y)), "{op:?}, shape {shape}");
+            }
+        }
+    }
 }

@@ -247,9 +247,13 @@ impl Run<'_> {
         self.budget = self.budget.saturating_sub(block.len() as u64);
         for node in block {
             match node {
-                // Most instructions are of these three kinds, which cannot end a lane's way through the block.
+                // Most instructions are of these four kinds, which cannot end a lane's way through the block.
                 Node::Instr(Instr::Binary(op, d, a, b)) => {
                     self.binary(*op, *d, *a, *b);
+                    continue;
+                }
+                Node::Instr(Instr::Fused(op, d, abc)) => {
+                    self.fused(*op, *d, *abc);
                     continue;
                 }
                 Node::Instr(Instr::Unary(op, d, a)) => {
@@ -402,10 +406,15 @@ impl Run<'_> {
         }
     }
 
+    fn fused(&mut self, op: crate::ir::op::Pair, d: Reg, [a, b, c]: [Reg; 3]) {
+        fill!(self.floats[d], |o| k::fused(op, &mut o, self.regs.f(a), self.regs.f(b), self.regs.f(c)));
+    }
+
     fn instr(&mut self, instr: &Instr) {
         match instr {
             Instr::Unary(op, d, a) => self.unary(*op, *d, *a),
             Instr::Binary(op, d, a, b) => self.binary(*op, *d, *a, *b),
+            Instr::Fused(op, d, abc) => self.fused(*op, *d, *abc),
             Instr::Compare(op, d, a, b) => {
                 fill!(self.ints[d], |c| k::compare(*op, &mut c, self.regs.f(*a), self.regs.f(*b)));
             }

@@ -1,12 +1,8 @@
 //! Program and points to closure tree: the machine that runs shaders over batches.
 //!
 //! A register is a column, one number a lane, or one number for all lanes when the optimizer found it uniform. Each
-//! instruction is decoded once and then loops over the lanes (`kernels`). Control flow narrows a mask; what only some
-//! lanes do is blended in by masked moves.
-//!
-//! Decision (2026-11-22): an instruction stays one operation and one loop, because a chain of ten takes 1.45 times what it takes as
-//! one loop with no registers in between, and a loop of 110 takes 1.3 times (benches/ratios); instead of pairs of operations
-//! in one instruction, of which a weave of 46 instructions would spare six.
+//! instruction, one operation or a pair of them, is decoded once and then loops over the lanes (`kernels`). Control flow
+//! narrows a mask; what only some lanes do is blended in by masked moves.
 //!
 //! Decision (2026-11-22): a move takes the column of a register that nothing else reads, and a block's instructions are taken
 //! from the budget at once, because a loop of 110 operations then takes 32 ns a point instead of 33 to 34; instead of a copy, and of

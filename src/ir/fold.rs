@@ -56,6 +56,13 @@ pub fn binary(op: Binary, a: f32, b: f32) -> f32 {
     }
 }
 
+/// Two operations of two floats, the second of the first one's result.
+#[inline(always)]
+pub fn pair(op: Pair, a: f32, b: f32, c: f32) -> f32 {
+    let t = binary(op.first, a, b);
+    if op.swapped { binary(op.second, c, t) } else { binary(op.second, t, c) }
+}
+
 /// A comparison, 1 for true.
 #[inline(always)]
 pub fn compare(op: Compare, a: f32, b: f32) -> i32 {

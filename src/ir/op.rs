@@ -52,6 +52,17 @@ pub enum Binary {
     Step,
 }
 
+/// Two operations in one: `t = a first b`, then `t second c`. The result is rounded after each, as if they were apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Pair {
+    /// Makes `t` of `a` and `b`.
+    pub first: Binary,
+    /// Makes the result of `t` and `c`.
+    pub second: Binary,
+    /// True for `c second t`.
+    pub swapped: bool,
+}
+
 /// Two floats to an int, 1 for true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "each is the comparison of its name")]

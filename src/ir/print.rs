@@ -101,6 +101,7 @@ impl Printer<'_> {
         match instr {
             Instr::Unary(op, _, a) => format!("{} {}", word(op), self.reg(*a)),
             Instr::Binary(op, _, a, b) => format!("{} {}", word(op), self.regs(&[*a, *b])),
+            Instr::Fused(op, _, abc) => self.pair(*op, *abc),
             Instr::Compare(op, _, a, b) => format!("{} {}", word(op), self.regs(&[*a, *b])),
             Instr::Test(op, _, a) => format!("is_{} {}", word(op), self.reg(*a)),
             Instr::IntUnary(op, _, a) => format!("int_{} {}", word(op), self.reg(*a)),
@@ -124,6 +125,14 @@ impl Printer<'_> {
             Instr::ClosureSelect(_, c, a, b) => format!("closure_select {}", self.regs(&[*c, *a, *b])),
             Instr::ClosureAbsent(_, a) => format!("closure_absent {}", self.reg(*a)),
         }
+    }
+
+    /// The first operation stands in parentheses where the second one has its result.
+    fn pair(&mut self, op: Pair, [a, b, c]: [Reg; 3]) -> String {
+        let word = |op: Binary| snake(&format!("{op:?}"));
+        let (first, c) = (format!("({} {})", word(op.first), self.regs(&[a, b])), self.reg(c));
+        let (left, right) = if op.swapped { (c, first) } else { (first, c) };
+        format!("{} {left}, {right}", word(op.second))
     }
 
     fn leaf(&mut self, closure: u32, params: &[Reg], keywords: &[(u32, Vec<Reg>)]) -> String {

@@ -92,6 +92,8 @@ pub enum Instr {
     Unary(Unary, Reg, Reg),
     /// `dst = a op b`
     Binary(Binary, Reg, Reg, Reg),
+    /// `dst = (a first b) second c`, floats; the optimizer makes it of two instructions.
+    Fused(Pair, Reg, [Reg; 3]),
     /// `dst = a op b`, an int
     Compare(Compare, Reg, Reg, Reg),
     /// `dst = is a …`, an int
@@ -278,6 +280,7 @@ impl Instr {
                 visit(*b);
             }
             Select(_, c, a, b) | ClosureSelect(_, c, a, b) => [c, a, b].into_iter().for_each(|r| visit(*r)),
+            Fused(_, _, abc) => abc.iter().for_each(|r| visit(*r)),
             ArrayGet { index, .. } => visit(*index),
             ArraySet { index, src, .. } => {
                 visit(*index);
@@ -305,7 +308,7 @@ impl Instr {
             ArrayGet { dst, .. } | Leaf { dst, .. } => visit(*dst),
             ArraySet { .. } => {}
             Call { dst, .. } => dst.iter().for_each(|r| visit(*r)),
-            ClosureScale(d, ..) | ClosureAbsent(d, _) => visit(*d),
+            ClosureScale(d, ..) | ClosureAbsent(d, _) | Fused(_, d, _) => visit(*d),
         }
     }
 

@@ -1,10 +1,11 @@
-//! Program to program: derivatives where they are read, dead code out, uniform values found.
+//! Program to program: derivatives where they are read, dead code out, uniform values found, operations in pairs.
 //!
 //! Differs from OSL: where OSL's derivatives have the wrong sign (`atan2`), velour's are the mathematical ones, and asking for a
 //! derivative never changes the value (OSL's `pow(0, 0)` becomes 0 when its derivative is read).
 
 mod dead;
 mod derive;
+mod fuse;
 mod uniform;
 
 use crate::ir::program::Program;
@@ -16,11 +17,13 @@ pub struct OptimizeOptions {
     pub dead_code: bool,
     /// Keep values that all lanes share as one number.
     pub uniform: bool,
+    /// Run two operations as one instruction where one is there for the other alone.
+    pub fuse: bool,
 }
 
 impl Default for OptimizeOptions {
     fn default() -> Self {
-        OptimizeOptions { dead_code: true, uniform: true }
+        OptimizeOptions { dead_code: true, uniform: true, fuse: true }
     }
 }
 
@@ -34,5 +37,9 @@ pub fn optimize(mut program: Program, options: OptimizeOptions) -> Program {
         dead::remove(&mut program);
     }
     uniform::mark(&mut program, options.uniform);
+    // Last, because the passes before it know single operations only.
+    if options.fuse {
+        fuse::pairs(&mut program);
+    }
     program
 }
