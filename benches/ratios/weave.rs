@@ -183,65 +183,37 @@ fn check(batch: &mut Batch, from: Points, wi: &velour::math::columns::Column3, o
     }
 }
 
+/// Prints the rows of one limit; `bars` are for the pattern and for the rest.
+fn stages<const LIBM: bool>(table: &Table, limit: &str, from: Points, bars: [&str; 2]) {
+    let (mut plain, mut batch) = (Batch::new(&without_closures()), Batch::new(SHADER));
+    let (wi, mut light) = (directions(2), Evaluation::default());
+    let mut out: Vec<Block> = vec![[[0.0; BLOCK]; COLUMNS]; N / BLOCK];
+    check(&mut batch, from, &wi, &mut out);
+    table.head("weave of three noises", limit);
+    let what = |stage: &str| format!("weave, {stage}, {limit}");
+    let by_hand = &mut || run::<LIBM, PATTERN>(black_box(from), &mut out);
+    table.time(&what("pattern"), (&mut || plain.shade(), N), (by_hand, N), bars[0]);
+    let by_hand = &mut || run::<LIBM, LOBES>(black_box(from), &mut out);
+    table.time(&what("to lobes"), (&mut || batch.flatten(), N), (by_hand, N), bars[1]);
+    let by_hand = &mut || run::<LIBM, 2>(black_box(from), &mut out);
+    let evaluated = &mut || {
+        batch.flatten();
+        batch.lobes.evaluate(black_box(&wi), &mut light);
+    };
+    table.time(&what("evaluated"), (evaluated, N), (by_hand, N), bars[1]);
+}
+
 /// Prints the rows.
 pub fn rows(table: &Table) {
-    let (mut plain, mut batch) = (Batch::new(&without_closures()), Batch::new(SHADER));
-    let (points, wo, wi) = (batch.points.clone(), batch.wo.clone(), directions(2));
+    let batch = Batch::new(SHADER);
+    let (points, wo, wi) = (&batch.points, &batch.wo, directions(2));
     let from = Points {
         p: columns(&points.p),
         uv: [&points.u, &points.v],
         normal: columns(&points.n),
-        wo: columns(&wo),
+        wo: columns(wo),
         wi: columns(&wi),
     };
-    let mut out: Vec<Block> = vec![[[0.0; BLOCK]; COLUMNS]; N / BLOCK];
-    check(&mut batch, from, &wi, &mut out);
-    let mut light = Evaluation::default();
-    table.head("weave of three noises", "by hand");
-    let bar = "<= 1.5; <= 15.2 ns (a tenth of OSL)";
-    table.time(
-        "weave, pattern",
-        (&mut || plain.shade(), N),
-        (&mut || run::<false, PATTERN>(black_box(from), &mut out), N),
-        bar,
-    );
-    table.time(
-        "weave, to lobes",
-        (&mut || batch.flatten(), N),
-        (&mut || run::<false, LOBES>(black_box(from), &mut out), N),
-        "<= 1.5",
-    );
-    let mut evaluated = || {
-        batch.flatten();
-        batch.lobes.evaluate(black_box(&wi), &mut light);
-    };
-    table.time(
-        "weave, evaluated",
-        (&mut evaluated, N),
-        (&mut || run::<false, 2>(black_box(from), &mut out), N),
-        "<= 1.5",
-    );
-    table.head("weave of three noises", "scalar");
-    table.time(
-        "weave, pattern, scalar",
-        (&mut || plain.shade(), N),
-        (&mut || run::<true, PATTERN>(black_box(from), &mut out), N),
-        "<= 0.33",
-    );
-    table.time(
-        "weave, to lobes, scalar",
-        (&mut || batch.flatten(), N),
-        (&mut || run::<true, LOBES>(black_box(from), &mut out), N),
-        "<= 0.33",
-    );
-    let mut evaluated = || {
-        batch.flatten();
-        batch.lobes.evaluate(black_box(&wi), &mut light);
-    };
-    table.time(
-        "weave, evaluated, scalar",
-        (&mut evaluated, N),
-        (&mut || run::<true, 2>(black_box(from), &mut out), N),
-        "<= 0.33",
-    );
+    stages::<false>(table, "by hand", from, ["<= 1.5; <= 15.2 ns (a tenth of OSL)", "<= 1.5"]);
+    stages::<true>(table, "scalar", from, ["<= 0.33"; 2]);
 }

@@ -5,14 +5,12 @@
 //! `accel/shape.rs`, term by term, so that both methods give the same answers.
 
 use super::accel::{Hit, NOTHING, Ray};
+use super::block::{Row, WIDTH};
 use super::shadow::ShadowRay;
 use super::wave::Path;
 use crate::scene::{Geometry, Shape};
 use glam::Vec3;
 use multiversion::multiversion;
-
-const WIDTH: usize = 16;
-type Lanes = [f32; WIDTH];
 
 /// All primitives of a small scene.
 #[derive(Clone, Debug)]
@@ -32,15 +30,15 @@ impl Few {
 /// Sixteen rays, and the nearest hit of each so far.
 #[derive(Clone, Copy)]
 struct Block {
-    ox: Lanes,
-    oy: Lanes,
-    oz: Lanes,
-    dx: Lanes,
-    dy: Lanes,
-    dz: Lanes,
-    t: Lanes,
-    u: Lanes,
-    v: Lanes,
+    ox: Row,
+    oy: Row,
+    oz: Row,
+    dx: Row,
+    dy: Row,
+    dz: Row,
+    t: Row,
+    u: Row,
+    v: Row,
     skip: [u32; WIDTH],
     target: [u32; WIDTH],
     id: [u32; WIDTH],

@@ -1,5 +1,6 @@
 //! Area lights: which primitives emit, how one is chosen, and how a point on it is.
 
+use super::block::{Row, Row3, WIDTH, get, load, set, store};
 use super::surface::Form;
 use crate::math::columns::Column3;
 use crate::scene::{Geometry, Shape};
@@ -181,36 +182,21 @@ impl LightForm {
     }
 }
 
-/// Lanes that are worked on at a time.
-const WIDTH: usize = 16;
-type Block = [f32; WIDTH];
-type Block3 = [Block; 3];
-
-/// A few lanes' lights, a row a number.
+/// The lights of a few lanes.
 struct LightBlock {
-    p: Block3,
-    a: Block3,
-    b: Block3,
-    c: Block3,
-    area: Block3,
-    x: Block,
-    y: Block,
-    chance: Block,
+    p: Row3,
+    a: Row3,
+    b: Row3,
+    c: Row3,
+    area: Row3,
+    x: Row,
+    y: Row,
+    chance: Row,
     triangle: [u32; WIDTH],
     usable: [u32; WIDTH],
-    direction: Block3,
-    distance: Block,
-    pdf: Block,
-}
-
-#[inline(always)]
-fn set(block: &mut Block3, lane: usize, v: Vec3) {
-    (block[0][lane], block[1][lane], block[2][lane]) = (v.x, v.y, v.z);
-}
-
-#[inline(always)]
-fn get(block: &Block3, lane: usize) -> Vec3 {
-    Vec3::new(block[0][lane], block[1][lane], block[2][lane])
+    direction: Row3,
+    distance: Row,
+    pdf: Row,
 }
 
 impl LightBlock {
@@ -248,9 +234,7 @@ impl LightBlock {
     #[inline(always)]
     fn look(&mut self, p: &Column3, [x, y]: [&[f32]; 2], start: usize, len: usize) {
         let lanes = start..start + len;
-        self.p[0][..len].copy_from_slice(&p.x[lanes.clone()]);
-        self.p[1][..len].copy_from_slice(&p.y[lanes.clone()]);
-        self.p[2][..len].copy_from_slice(&p.z[lanes.clone()]);
+        load(&mut self.p, start, len, p);
         self.x[..len].copy_from_slice(&x[lanes.clone()]);
         self.y[..len].copy_from_slice(&y[lanes]);
     }
@@ -269,9 +253,7 @@ impl LightBlock {
 
     fn store(&self, start: usize, len: usize, out: &mut LightLanes) {
         let lanes = start..start + len;
-        out.direction.x[lanes.clone()].copy_from_slice(&self.direction[0][..len]);
-        out.direction.y[lanes.clone()].copy_from_slice(&self.direction[1][..len]);
-        out.direction.z[lanes.clone()].copy_from_slice(&self.direction[2][..len]);
+        store(&mut out.direction, start, len, &self.direction);
         out.distance[lanes.clone()].copy_from_slice(&self.distance[..len]);
         out.pdf_solid_angle[lanes.clone()].copy_from_slice(&self.pdf[..len]);
         out.u[lanes.clone()].copy_from_slice(&self.x[..len]);

@@ -23,6 +23,7 @@
 //! the tile size as well, one that stops at a time on the machine.
 
 pub mod accel;
+mod block;
 mod bounce;
 mod camera;
 mod explain;

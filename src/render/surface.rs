@@ -1,8 +1,8 @@
 //! From a hit to a shading point: position, normals, texture coordinates and derivatives, as far as they are read.
 
+use super::block::{Row3, WIDTH, get, set, store};
 use super::plan::Needs;
 use crate::exec::Points;
-use crate::math::columns::Column3;
 use crate::scene::{Geometry, Primitive, Shape};
 use glam::{Vec2, Vec3};
 use multiversion::multiversion;
@@ -74,39 +74,17 @@ pub fn place(geometry: &Geometry, hit: &RayHitPoint) -> (Vec3, Vec3) {
     Form::new(&geometry.primitives[hit.primitive as usize].shape).place(hit.origin, hit.direction, hit.t, hit.u, hit.v)
 }
 
-/// Rays that are worked on at a time.
-const WIDTH: usize = 16;
-type Block = [f32; WIDTH];
-type Block3 = [Block; 3];
-
-/// The hits of a few rays, a row a number, so that all rows of a step fit the registers or the nearest cache.
+/// The hits of a few rays.
 struct Hits {
-    origin: Block3,
-    direction: Block3,
-    place: Block3,
-    form: [Block3; 3],
+    origin: Row3,
+    direction: Row3,
+    place: Row3,
+    form: [Row3; 3],
     round: [u32; WIDTH],
-    p: Block3,
-    outward: Block3,
-    facing: Block3,
+    p: Row3,
+    outward: Row3,
+    facing: Row3,
     behind: [i32; WIDTH],
-}
-
-#[inline(always)]
-fn set(block: &mut Block3, lane: usize, v: Vec3) {
-    (block[0][lane], block[1][lane], block[2][lane]) = (v.x, v.y, v.z);
-}
-
-#[inline(always)]
-fn get(block: &Block3, lane: usize) -> Vec3 {
-    Vec3::new(block[0][lane], block[1][lane], block[2][lane])
-}
-
-#[inline(always)]
-fn store(column: &mut Column3, start: usize, len: usize, block: &Block3) {
-    column.x[start..start + len].copy_from_slice(&block[0][..len]);
-    column.y[start..start + len].copy_from_slice(&block[1][..len]);
-    column.z[start..start + len].copy_from_slice(&block[2][..len]);
 }
 
 impl Hits {
