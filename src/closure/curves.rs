@@ -6,6 +6,7 @@
 
 use super::kinds::Kind;
 use super::settings::SheenAlbedo;
+use super::store::Store;
 use super::surfaces::{Surface, Surfaces, Values};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, SHORT};
 use crate::bsdf::sheen::charlie::clamp_roughness;
@@ -20,14 +21,13 @@ const BLOCK: usize = 16;
 pub type Curves = [[f32; BLOCK]; SHORT];
 
 /// Adds the curves of a surface, where it is a sheen that has one a lane; says how many blocks there were before, or nothing.
-pub fn push_curves(surfaces: &Surfaces, surface: &Surface, curves: &mut Vec<Curves>) -> Option<u32> {
+pub fn push_curves(surfaces: &Surfaces, surface: &Surface, curves: &mut Store<Curves>) -> Option<u32> {
     let (Kind::Sheen(term, soft) | Kind::SheenByNormals(term, soft)) = surface.kind else { return None };
     let Values::Columns(offsets) = surface.params else { return None };
     if !term.is_exact() || surfaces.sheen_albedo != SheenAlbedo::Fit {
         return None;
     }
-    let at = curves.len();
-    curves.resize(at + surfaces.lanes.div_ceil(BLOCK), [[0.0; BLOCK]; SHORT]);
+    let at = curves.take(surfaces.lanes.div_ceil(BLOCK));
     let roughness = surfaces.column(offsets[0]);
     if soft {
         curve_lanes::<true>(roughness, &mut curves[at..]);

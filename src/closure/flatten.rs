@@ -13,7 +13,7 @@ use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
 use super::weights::{Operand, Weight, Weights, finite_and_some, multiply, normalise_lanes, share_lanes};
 use crate::lang::closures::{ClosureSpec, ClosureTable, Model};
 use crate::math::columns::Column3;
-use std::collections::HashMap;
+use smallvec::SmallVec;
 
 /// More lobes or pending weights than this are dropped and reported: a shared base under many different layers could
 /// otherwise grow without bound.
@@ -37,7 +37,8 @@ pub struct Sweep {
     weights: Weights,
     in_top: Vec<bool>,
     step_of: Vec<u32>,
-    leaves_of: HashMap<(u32, u32), (u32, u32)>,
+    /// Where the leaves of a node in a medium lie in [`Layers::leaves`], by falling node.
+    leaves_of: Vec<((u32, u32), (u32, u32))>,
     emitters: Vec<(Weight, u32, bool, NodeId)>,
     ready: Vec<(u32, Leaf)>,
 }
@@ -54,6 +55,13 @@ impl Sweep {
         self.entries.clear();
         self.weights.clear();
         self.emitters.clear();
+    }
+
+    /// Where the leaves of a node in a medium lie; nodes were visited by falling index, each in a few media.
+    fn leaves_of(&self, index: u32, medium: u32) -> (u32, u32) {
+        let from = self.leaves_of.partition_point(|((node, _), _)| *node > index);
+        let mut of_node = self.leaves_of[from..].iter().take_while(|((node, _), _)| *node == index);
+        of_node.find(|((_, m), _)| *m == medium).map_or((0, 0), |&(_, leaves)| leaves)
     }
 
     /// Sends a weight to a node; false when there are too many.
@@ -192,7 +200,7 @@ fn make_ready(lobes: &mut Lobes, spec: &ClosureSpec, tree: &Tree, index: u32, me
     if lobes.sweep.in_top[index as usize] {
         let first = lobes.layers.leaves.len() as u32;
         lobes.layers.leaves.extend(leaf.parts.iter().map(|part| (part.surface, part.t)));
-        lobes.sweep.leaves_of.insert((index, medium), (first, lobes.layers.leaves.len() as u32));
+        lobes.sweep.leaves_of.push(((index, medium), (first, lobes.layers.leaves.len() as u32)));
     }
     leaf
 }
@@ -271,9 +279,8 @@ fn add_lobe(
         return false;
     }
     let n = tree.lanes;
-    let start = lobes.weights.len();
     let made = &lobes.surfaces.list[surface as usize];
-    lobes.weights.resize(start + 3 * n, 0.0);
+    let start = lobes.weights.take(3 * n);
     for component in 0..3 {
         let factor = tint.map_or(Operand::One(1.0), |t| Operand::of(tree, t[component]));
         let out = &mut lobes.weights[start + component * n..start + (component + 1) * n];
@@ -323,7 +330,7 @@ fn build_steps(
         return;
     }
     layers.steps.push(Step::Zero);
-    let mut media: Vec<u32> = layers.tops().map(|(_, medium)| medium).collect();
+    let mut media: SmallVec<[u32; 4]> = layers.tops().map(|(_, medium)| medium).collect();
     media.sort_unstable();
     media.dedup();
     for medium in media {
@@ -332,7 +339,7 @@ fn build_steps(
             layers.steps.push(step);
             sweep.step_of[index as usize] = layers.steps.len() as u32 - 1;
         }
-        let here: Vec<usize> = layers.tops().filter(|&(_, m)| m == medium).map(|(layer, _)| layer).collect();
+        let here: SmallVec<[usize; 8]> = layers.tops().filter(|&(_, m)| m == medium).map(|(layer, _)| layer).collect();
         for layer in here {
             if let Top::Tree(node) = &mut layers.list[layer].top {
                 *node = sweep.step_of[*node as usize];
@@ -365,7 +372,7 @@ fn step_of(
                 Some(Param::Closure(child)) if k < param_count => of(*child),
                 _ => 0,
             };
-            let (first, last) = sweep.leaves_of.get(&(index, medium)).copied().unwrap_or((0, 0));
+            let (first, last) = sweep.leaves_of(index, medium);
             match table.get(closure).model {
                 Model::Layer => Step::Over(nested(0), nested(1)),
                 Model::Sheen | Model::Coat => {
@@ -382,11 +389,14 @@ fn step_of(
 /// Sums emission and holes, seen through the layers over them.
 fn emit(lobes: &mut Lobes) {
     let n = lobes.lanes;
-    lobes.emission.resize(n);
-    lobes.holdout.resize(n, 0.0);
-    for column in [&mut lobes.emission.x, &mut lobes.emission.y, &mut lobes.emission.z, &mut lobes.holdout] {
-        column.fill(0.0);
+    if lobes.emits || lobes.holdout.len() != n {
+        lobes.emission.resize(n);
+        lobes.holdout.resize(n, 0.0);
+        for column in [&mut lobes.emission.x, &mut lobes.emission.y, &mut lobes.emission.z, &mut lobes.holdout] {
+            column.fill(0.0);
+        }
     }
+    lobes.emits = !lobes.sweep.emitters.is_empty();
     for &(weight, layer, hole, node) in &lobes.sweep.emitters {
         for lane in 0..n {
             let through = if layer == NONE { 1.0 } else { lobes.layers.through_of(layer)[lane] };
@@ -407,7 +417,6 @@ fn emit(lobes: &mut Lobes) {
 /// Gives every lobe its probability: luminance of the weight's magnitude, albedo, and what the layers let through.
 fn pick(lobes: &mut Lobes) {
     let n = lobes.lanes;
-    lobes.picks.clear();
     lobes.picks.resize(n * lobes.lobes.len(), 0.0);
     lobes.last.clear();
     lobes.last.resize(n, NONE);

@@ -13,6 +13,7 @@ use super::kinds::Kind;
 use super::kinds::with_source;
 use super::media::Media;
 use super::settings::{Layering, SheenAlbedo};
+use super::store::Store;
 use super::surfaces::{NONE, Surface, Surfaces, Values};
 use super::weights::{Operand, multiply};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD};
@@ -93,7 +94,7 @@ pub struct Layers {
     seen: Vec<f32>,
     /// Where [`Layers::curves`] has the albedo curves of each layer's sheen, or [`NONE`].
     curves_at: Vec<u32>,
-    curves: Vec<Curves>,
+    curves: Store<Curves>,
     alpha_o: Vec<f32>,
     through: Vec<f32>,
     inverse_mean: Vec<f32>,

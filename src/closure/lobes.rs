@@ -7,6 +7,7 @@ use super::layering::Layers;
 use super::media::Media;
 use super::sampling::SampleScratch;
 use super::settings::Settings;
+use super::store::Store;
 use super::surfaces::{NONE, Surfaces};
 use super::tree::{NodeId, Tree};
 use crate::lang::closures::ClosureTable;
@@ -70,7 +71,7 @@ pub struct Lobes {
     pub(super) within: Vec<f32>,
     pub(super) lobes: Vec<Lobe>,
     /// Three columns a lobe.
-    pub(super) weights: Vec<f32>,
+    pub(super) weights: Store,
     /// One column a lobe: the probability to pick it.
     pub(super) picks: Vec<f32>,
     /// The last lobe of a lane that can be picked, or [`NONE`].
@@ -81,6 +82,8 @@ pub struct Lobes {
     pub(super) ones: Vec<f32>,
     pub(super) emission: Column3,
     pub(super) holdout: Vec<f32>,
+    /// False while emission and holdout are zero everywhere.
+    pub(super) emits: bool,
     pub(super) dropped: Vec<Dropped>,
     pub(super) sweep: Sweep,
     pub(super) scratch: SampleScratch,
@@ -97,7 +100,7 @@ impl Lobes {
             media: Media::default(),
             within: Vec::new(),
             lobes: Vec::new(),
-            weights: Vec::new(),
+            weights: Store::default(),
             picks: Vec::new(),
             last: Vec::new(),
             wo: Column3::default(),
@@ -106,6 +109,7 @@ impl Lobes {
             ones: Vec::new(),
             emission: Column3::default(),
             holdout: Vec::new(),
+            emits: false,
             dropped: Vec::new(),
             sweep: Sweep::default(),
             scratch: SampleScratch::default(),

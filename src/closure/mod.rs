@@ -12,6 +12,7 @@ mod normals;
 pub mod print;
 mod sampling;
 pub mod settings;
+mod store;
 mod surfaces;
 pub mod tree;
 mod weights;

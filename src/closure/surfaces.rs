@@ -12,6 +12,7 @@ use super::kinds::{Kind, with_source};
 use super::media::Media;
 use super::normals::{NormalColumns, normal_lanes, tangent_lanes};
 use super::settings::SheenAlbedo;
+use super::store::Store;
 use super::weights::all_finite;
 use crate::bsdf::{MAX_PARAMS, Params, Scatter};
 use crate::closure::tree::{Floats, Tree};
@@ -115,9 +116,7 @@ pub struct Surfaces {
     pub list: Vec<Surface>,
     /// Columns of parameters and gates.
     pub data: Vec<f32>,
-    /// What is in use of the views; the rest is kept, for clearing it would cost as much as writing it.
-    views_used: usize,
-    views: Vec<f32>,
+    views: Store,
     given: Column3,
     frames: Vec<FrameColumns>,
     frames_used: usize,
@@ -143,7 +142,7 @@ impl Surfaces {
         self.lanes = lanes;
         self.list.clear();
         self.data.clear();
-        self.views_used = 0;
+        self.views.clear();
         self.frames_used = 0;
     }
 
@@ -271,15 +270,14 @@ impl Surfaces {
 
     /// Computes what the newest surface derives from the viewer.
     fn look(&mut self) {
-        let (n, at) = (self.lanes, self.views_used);
+        let n = self.lanes;
         let Some(mut surface) = self.list.pop() else { return };
-        surface.view = at as u32;
+        surface.view = self.views.len() as u32;
         if !surface.kind.is_delta() {
             let mut views = std::mem::take(&mut self.views);
             let wo = Triples::of(&self.frames[surface.frame as usize].wo);
             with_source!(self, surface, |M, source| {
-                self.views_used = at + n * M::VIEW;
-                views.resize(self.views_used.max(views.len()), 0.0);
+                let at = views.take(n * M::VIEW);
                 view_lanes::<M, _>(source, wo, &mut views[at..]);
             });
             self.views = views;
@@ -314,9 +312,17 @@ impl Surfaces {
         frame.inside.resize(n, 0.0);
         frame.broken.resize(n, 0.0);
         for (k, column) in [&mut self.given.x, &mut self.given.y, &mut self.given.z].into_iter().enumerate() {
-            fill(column, tree, normal[k], n);
+            if let Floats::Uniform(value) = normal[k] {
+                column.clear();
+                column.resize(n, value);
+            }
         }
-        let from = NormalColumns { given: Triples::of(&self.given), wo: Triples::of(wo), ng: Triples::of(ng) };
+        let given = Triples {
+            x: column_of(tree, normal[0], &self.given.x),
+            y: column_of(tree, normal[1], &self.given.y),
+            z: column_of(tree, normal[2], &self.given.z),
+        };
+        let from = NormalColumns { given, wo: Triples::of(wo), ng: Triples::of(ng) };
         let normals = &mut frame.normal;
         normal_lanes(from, &mut normals.x, &mut normals.y, &mut normals.z, &mut frame.inside, &mut frame.broken);
         (frame.any_inside, frame.any_broken) = (any(&frame.inside), any(&frame.broken));
@@ -341,12 +347,11 @@ fn any(values: &[f32]) -> bool {
     values.iter().fold(0, |bits, value| bits | value.to_bits()) != 0
 }
 
-/// Writes a column of the tree as one number a lane.
-pub fn fill(out: &mut Vec<f32>, tree: &Tree, from: Floats, lanes: usize) {
-    out.clear();
+/// A column of the tree, or another in place of a single number.
+fn column_of<'a>(tree: &'a Tree, from: Floats, single: &'a [f32]) -> &'a [f32] {
     match from {
-        Floats::Uniform(value) => out.resize(lanes, value),
-        Floats::Varying(at) => out.extend_from_slice(&tree.floats[at as usize..at as usize + lanes]),
+        Floats::Uniform(_) => single,
+        Floats::Varying(at) => &tree.floats[at as usize..at as usize + tree.lanes],
     }
 }
 

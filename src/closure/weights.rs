@@ -4,6 +4,7 @@
 //! function called for each lane and component, and sums that keep the order of their terms, took 28 % of the time of
 //! flattening; instead of one closure a lane, which is shorter.
 
+use super::store::Store;
 use super::tree::{Floats, Tree};
 use multiversion::multiversion;
 
@@ -19,7 +20,7 @@ pub enum Weight {
 /// The columns of all weights of a batch.
 #[derive(Debug, Default)]
 pub struct Weights {
-    columns: Vec<f32>,
+    columns: Store,
 }
 
 /// One component of a weight, or one column of the tree.
@@ -62,8 +63,7 @@ impl Weights {
 
     /// Three new columns, filled from the old ones component by component.
     fn make(&mut self, lanes: usize, mut fill: impl FnMut(&[f32], usize, &mut [f32])) -> Weight {
-        let at = self.columns.len();
-        self.columns.resize(at + 3 * lanes, 0.0);
+        let at = self.columns.take(3 * lanes);
         let (old, new) = self.columns.split_at_mut(at);
         for (component, out) in new.chunks_exact_mut(lanes.max(1)).enumerate() {
             fill(old, component, out);

@@ -30,7 +30,7 @@ pub fn copy_block<const BLOCK: usize>(to: &mut [f32], from: &[f32]) {
 }
 
 /// Three columns that hold one triple a lane.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub struct Column3 {
     /// First components.
     pub x: Vec<f32>,
@@ -38,6 +38,19 @@ pub struct Column3 {
     pub y: Vec<f32>,
     /// Third components.
     pub z: Vec<f32>,
+}
+
+impl Clone for Column3 {
+    fn clone(&self) -> Self {
+        Column3 { x: self.x.clone(), y: self.y.clone(), z: self.z.clone() }
+    }
+
+    /// Keeps the memory, which the derived function would give back and ask for again.
+    fn clone_from(&mut self, from: &Self) {
+        self.x.clone_from(&from.x);
+        self.y.clone_from(&from.y);
+        self.z.clone_from(&from.z);
+    }
 }
 
 impl Column3 {

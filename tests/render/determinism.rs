@@ -16,7 +16,7 @@ fn bits(change: impl FnOnce(&mut Settings)) -> Vec<u32> {
 pub fn same_however_it_is_cut(bits: impl Fn(&dyn Fn(&mut Settings)) -> Vec<u32>) {
     let reference = bits(&|s| s.threads = 1);
     assert!(reference == bits(&|s| s.threads = 2), "threads");
-    for width in [1, 8, 127, 128] {
+    for width in [1, 8, 127, 128, 511] {
         assert!(reference == bits(&|s| s.batch_width = width), "batch width {width}");
     }
     for size in [1, 7, 64] {

@@ -18,5 +18,5 @@ pub(super) fn leaf(surfaces: &mut Surfaces, context: &LeafContext, arguments: &A
         let request = Request { kind, closure: arguments.spec.name, frame, params, eta: None, gate: NONE };
         Part { surface: surfaces.push(context.tree, request), t: 0 }
     };
-    Leaf { parts: [0, 1, 2, 3].map(part).to_vec(), ..Leaf::default() }
+    Leaf { parts: [0, 1, 2, 3].map(part).into(), ..Leaf::default() }
 }

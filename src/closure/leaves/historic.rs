@@ -3,6 +3,7 @@
 use super::{Arguments, Leaf, LeafContext, Part, variants};
 use crate::closure::kinds::Kind;
 use crate::closure::surfaces::{NONE, Request, Surfaces};
+use smallvec::smallvec;
 
 /// `ward(N, T, ax, ay)`.
 pub(super) fn ward(surfaces: &mut Surfaces, context: &LeafContext, arguments: &Arguments) -> Leaf {
@@ -31,7 +32,7 @@ pub(super) fn ashikhmin_shirley(surfaces: &mut Surfaces, context: &LeafContext, 
         let request = Request { kind, closure: arguments.spec.name, frame, params, eta: None, gate: NONE };
         Part { surface: surfaces.push(context.tree, request), t: 0 }
     };
-    Leaf { parts: parts.map(part).to_vec(), ..Leaf::default() }
+    Leaf { parts: parts.map(part).into_iter().collect(), ..Leaf::default() }
 }
 
 /// `lafortune(N, U, coefficients, exponent)`.
@@ -40,5 +41,5 @@ pub(super) fn lafortune(surfaces: &mut Surfaces, context: &LeafContext, argument
     let frame = surfaces.frame(context.tree, arguments.triple(0), Some(arguments.triple(1)), &context.seen);
     let params = &[x, y, z, arguments.float(3)];
     let request = Request { kind: Kind::Lafortune, closure: arguments.spec.name, frame, params, eta: None, gate: NONE };
-    Leaf { parts: vec![Part { surface: surfaces.push(context.tree, request), t: 0 }], ..Leaf::default() }
+    Leaf { parts: smallvec![Part { surface: surfaces.push(context.tree, request), t: 0 }], ..Leaf::default() }
 }

@@ -18,6 +18,7 @@ use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
 use crate::bsdf::fresnel::Term;
 use crate::lang::closures::{ClosureSpec, Model};
 use crate::lang::symbols::Symbol;
+use smallvec::{SmallVec, smallvec};
 
 /// A surface of a leaf, with the column of its coverage t when it lies on top of something.
 #[derive(Clone, Copy, Debug)]
@@ -45,13 +46,13 @@ pub struct Cover {
 #[derive(Debug, Default)]
 pub struct Leaf {
     /// Its surfaces.
-    pub parts: Vec<Part>,
+    pub parts: SmallVec<[Part; 4]>,
     /// How it covers its base.
-    pub covers: Vec<Cover>,
+    pub covers: SmallVec<[Cover; 2]>,
     /// A color that its weight is multiplied with.
     pub tint: Option<[Floats; 3]>,
     /// A color for each part in their order, in place of `tint`; empty for none.
-    pub tints: Vec<[Floats; 3]>,
+    pub tints: SmallVec<[[Floats; 3]; 2]>,
     /// The tree on top, of `layer`.
     pub top: Option<NodeId>,
     /// The coat over the base, of `coat`; flattening makes a medium of it.
@@ -124,13 +125,13 @@ fn variants(
     columns: &[Option<Ints>],
     code: impl Fn(usize) -> u32,
     floats_vary: bool,
-) -> Vec<(u32, u32)> {
+) -> SmallVec<[(u32, u32); 2]> {
     let uniform = !floats_vary && columns.iter().all(|c| !matches!(c, Some(Ints::Varying(_))));
     let lanes = if uniform { surfaces.lanes.min(1) } else { surfaces.lanes };
     let mut seen = (0..lanes).fold(0u128, |seen, lane| seen | 1 << code(lane));
     if seen.count_ones() == 1 {
         let only = seen.trailing_zeros();
-        return if only == 0 { Vec::new() } else { vec![(only, NONE)] };
+        return if only == 0 { SmallVec::new() } else { smallvec![(only, NONE)] };
     }
     seen &= !1;
     let codes = (1..128).filter(|c| seen >> c & 1 == 1);
@@ -157,7 +158,7 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
             _ => surfaces.frame(tree, arguments.triple(0), None, &context.seen),
         };
         let request = Request { kind, closure: spec.name, frame, params, eta, gate: NONE };
-        let parts = vec![Part { surface: surfaces.push(tree, request), t: 0 }];
+        let parts = smallvec![Part { surface: surfaces.push(tree, request), t: 0 }];
         // The color of a diffuse closure, where it has one, follows its normal.
         let colored = matches!(kind, Kind::Lambert | Kind::Translucent | Kind::Burley);
         Leaf { parts, tint: if colored { tint(1) } else { None }, ..Leaf::default() }
@@ -179,7 +180,7 @@ pub fn prepare_leaf(surfaces: &mut Surfaces, context: &LeafContext, spec: &Closu
             let frame = surfaces.frame(tree, [Floats::Uniform(0.0); 3], None, &context.seen);
             let request =
                 Request { kind: Kind::Lambert, closure: spec.name, frame, params: &[], eta: None, gate: NONE };
-            let parts = vec![Part { surface: surfaces.push(tree, request), t: 0 }];
+            let parts = smallvec![Part { surface: surfaces.push(tree, request), t: 0 }];
             Leaf { parts, tint: Some(arguments.triple(3)), ..Leaf::default() }
         }
         Model::Ward => historic::ward(surfaces, context, &arguments),

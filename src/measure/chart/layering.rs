@@ -78,7 +78,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     Ok(Figure {
         name: "layering",
         title: "Rules of layering: cost against energy and reciprocity".to_owned(),
-        cost: "ns to evaluate a sheen over Lambert, 128 lanes at a time".to_owned(),
+        cost: format!("ns to evaluate a sheen over Lambert, {} lanes at a time", closures::LANES),
         error: "largest error, below 1e-4 shown as 0".to_owned(),
         meaning: format!(
             "{MEDIANS} Three errors, each the worst over roughness 0.06 to 1 and all cosines, for a white sheen (softened exact \

@@ -139,7 +139,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     Ok(Figure {
         name: "precision",
         title: "Precision of the sheen's formula: cost against error".to_owned(),
-        cost: "ns an evaluation, 128 lanes at a time".to_owned(),
+        cost: format!("ns an evaluation, {} lanes at a time", closures::LANES),
         error: "largest relative error of f cos".to_owned(),
         meaning: format!(
             "{MEDIANS} Error: the largest relative error of f cos where it exceeds 1e-6, against the same formula in f64, over 2048 \

@@ -53,7 +53,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     Ok(Figure {
         name: "sampling",
         title: "Sampling of the sheen: cost of a sample against its variance".to_owned(),
-        cost: "ns a sample with weight and density, 128 lanes at a time".to_owned(),
+        cost: format!("ns a sample with weight and density, {} lanes at a time", closures::LANES),
         error: "relative variance of f cos / pdf".to_owned(),
         meaning: format!(
             "{MEDIANS} Error: the variance of one sample's weight over the square of its mean, by quadrature of (f cos)² / pdf, mean \

@@ -116,12 +116,13 @@ pub fn scene_figure(scene: &Scene, budget: &Budget, progress: &dyn Fn(usize, usi
         meaning: format!(
             "Error: the mean squared error over pixels and channels ({} x {}) against an image of {} samples a pixel, another \
              seed and the same layering rule. One line a setting; the defaults are `ltc` sheen, light and scattering \
-             samples combined, roulette from bounce 5, batches of 128 lanes. Seconds are the fastest of {} \
+             samples combined, roulette from bounce 5, batches of {} lanes. Seconds are the fastest of {} \
              renders. The number after a name is the \
              efficiency 1 / (error x seconds) of the last image of its line.\n\n{}",
             base.width,
             base.height,
             budget.reference,
+            base.batch_width,
             budget.repeats,
             equal_time(&points)
         ),

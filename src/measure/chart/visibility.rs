@@ -60,7 +60,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     Ok(Figure {
         name: "visibility",
         title: "Visibility term of the sheen: cost of the lobe against error of its energy".to_owned(),
-        cost: "ns to evaluate the lobe and its density, 128 lanes at a time".to_owned(),
+        cost: format!("ns to evaluate the lobe and its density, {} lanes at a time", closures::LANES),
         error: "largest error of the directional albedo".to_owned(),
         meaning: format!(
             "{MEDIANS} Error: the largest difference of the directional albedo (F = 1) from that of Smith's \
