@@ -39,7 +39,7 @@
 //! | [`ops`] | the one meaning of every builtin |
 //! | [`check`] | syntax tree to typed shader; every mistake a user can make ends here |
 //! | [`ir`] | typed shaders to a program; print; verify |
-//! | [`optimize`] | program to program: derivatives, dead code, uniform values |
+//! | [`optimize`] | program to program: derivatives, dead code, uniform values, operations in pairs |
 //! | [`bsdf`] | one file a scattering model, in its local frame |
 //! | [`closure`] | the tree: print, flatten to lobes, albedo scaling, evaluate, sample |
 //! | [`exec`] | program and points to closure tree |

@@ -200,7 +200,7 @@ fn summary(subjects: &[&dyn Subject], report: &Report) -> String {
     };
     let plural = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
     format!(
-        "{}, {}, {} (1 % together): {verdict}\n",
+        "{}, {}, {} (at most 1 % together): {verdict}\n",
         plural(subjects.len(), "subject"),
         plural(variants, "variant"),
         plural(report.tests as usize, "chi-square test")

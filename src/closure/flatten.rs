@@ -16,8 +16,8 @@ use crate::math::columns::Column3;
 use smallvec::SmallVec;
 
 /// More lobes or pending weights than this are dropped and reported: a shared base under many different layers could
-/// otherwise grow without bound.
-const MOST: usize = 1 << 17;
+/// otherwise grow without bound. So many lobes take a quarter of a gigabyte in a batch of 512 lanes.
+const MOST: usize = 1 << 15;
 /// How many dropped lanes are listed.
 const MOST_DROPPED: usize = 256;
 
@@ -38,7 +38,7 @@ pub struct Sweep {
     in_top: Vec<bool>,
     step_of: Vec<u32>,
     /// Where the leaves of a node in a medium lie in [`Layers::leaves`], by falling node.
-    leaves_of: Vec<((u32, u32), (u32, u32))>,
+    top_leaves: Vec<((u32, u32), (u32, u32))>,
     emitters: Vec<(Weight, u32, bool, NodeId)>,
     ready: Vec<(u32, Leaf)>,
 }
@@ -51,7 +51,7 @@ impl Sweep {
         self.in_top.resize(nodes, false);
         self.step_of.clear();
         self.step_of.resize(nodes, 0);
-        self.leaves_of.clear();
+        self.top_leaves.clear();
         self.entries.clear();
         self.weights.clear();
         self.emitters.clear();
@@ -59,8 +59,8 @@ impl Sweep {
 
     /// Where the leaves of a node in a medium lie; nodes were visited by falling index, each in a few media.
     fn leaves_of(&self, index: u32, medium: u32) -> (u32, u32) {
-        let from = self.leaves_of.partition_point(|((node, _), _)| *node > index);
-        let mut of_node = self.leaves_of[from..].iter().take_while(|((node, _), _)| *node == index);
+        let from = self.top_leaves.partition_point(|((node, _), _)| *node > index);
+        let mut of_node = self.top_leaves[from..].iter().take_while(|((node, _), _)| *node == index);
         of_node.find(|((_, m), _)| *m == medium).map_or((0, 0), |&(_, leaves)| leaves)
     }
 
@@ -200,7 +200,8 @@ fn make_ready(lobes: &mut Lobes, spec: &ClosureSpec, tree: &Tree, index: u32, me
     if lobes.sweep.in_top[index as usize] {
         let first = lobes.layers.leaves.len() as u32;
         lobes.layers.leaves.extend(leaf.parts.iter().map(|part| (part.surface, part.t)));
-        lobes.sweep.leaves_of.push(((index, medium), (first, lobes.layers.leaves.len() as u32)));
+        debug_assert!(lobes.sweep.top_leaves.last().is_none_or(|((node, _), _)| *node >= index));
+        lobes.sweep.top_leaves.push(((index, medium), (first, lobes.layers.leaves.len() as u32)));
     }
     leaf
 }

@@ -82,7 +82,7 @@ pub struct Lobes {
     pub(super) ones: Vec<f32>,
     pub(super) emission: Column3,
     pub(super) holdout: Vec<f32>,
-    /// False while emission and holdout are zero everywhere.
+    /// Did anything emit in the last batch, so that emission and holdout must be cleared?
     pub(super) emits: bool,
     pub(super) dropped: Vec<Dropped>,
     pub(super) sweep: Sweep,

@@ -89,7 +89,8 @@ impl Lobes {
     ///
     /// Decision (2026-11-22): by the first and not by the third number, because a lobe then gets a strip of the square of
     /// the first two, which is filled as evenly as the whole: 7 % less squared error where sheen lies over a diffuse
-    /// base with a white tint, 2 % in figure 1. The third is left to the models.
+    /// base with a white tint, 2 % in figure 1. The third is left to the models. What a lobe gets has as many bits fewer as its
+    /// probability has: one that is picked a thousandth of the time has 2^13 directions along one side of the square.
     fn choose(&mut self, xi: &Column3) {
         let n = self.lanes;
         let scratch = &mut self.scratch;

@@ -2,11 +2,11 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// Numbers, or blocks of them, that are taken from the front and given back together. What is taken holds anything: clearing it first would cost
-/// as much as writing it.
+/// Numbers, or blocks of them, that are taken from the front; what is given back is the end, or all. What is taken holds
+/// anything: clearing it first would cost as much as writing it.
 #[derive(Debug, Default)]
 pub struct Store<T = f32> {
-    numbers: Vec<T>,
+    items: Vec<T>,
     used: usize,
 }
 
@@ -21,12 +21,12 @@ impl<T: Clone + Default> Store<T> {
         self.used = self.used.min(used);
     }
 
-    /// Takes `count` numbers and says where they start.
+    /// Takes `count` items and says where they start.
     pub fn take(&mut self, count: usize) -> usize {
         let start = self.used;
         self.used += count;
-        if self.used > self.numbers.len() {
-            self.numbers.resize(self.used, T::default());
+        if self.used > self.items.len() {
+            self.items.resize(self.used, T::default());
         }
         start
     }
@@ -36,12 +36,29 @@ impl<T> Deref for Store<T> {
     type Target = [T];
 
     fn deref(&self) -> &[T] {
-        &self.numbers[..self.used]
+        &self.items[..self.used]
     }
 }
 
 impl<T> DerefMut for Store<T> {
     fn deref_mut(&mut self) -> &mut [T] {
-        &mut self.numbers[..self.used]
+        &mut self.items[..self.used]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_taken_is_as_long_as_asked_for() {
+        let mut store = Store::default();
+        assert_eq!((store.take(3), store.take(2), store.len()), (0, 3, 5));
+        store.fill(1.0);
+        store.truncate(3);
+        assert_eq!((store.len(), store.take(4)), (3, 3));
+        assert_eq!(store[..3], [1.0; 3]);
+        store.clear();
+        assert_eq!((store.len(), store.take(1), store.len()), (0, 0, 1));
     }
 }

@@ -123,7 +123,7 @@ pub fn fused(op: Pair, dst: &mut [f32], a: &[f32], b: &[f32], c: &[f32]) {
         |OP| map3(dst, a, b, c, |a, b, c| fold::pair(OP, a, b, c)), apart(op, &mut vec![0.0; dst.len()], dst, [a, b, c]));
 }
 
-/// The same as two instructions with `t` in between. The optimizer makes no other pairs than those that have a loop.
+/// The same as two instructions with `t` in between. Programs have no other pairs than those of [`Pair::has_loop`].
 fn apart(op: Pair, t: &mut [f32], dst: &mut [f32], [a, b, c]: [&[f32]; 3]) {
     binary(op.first, t, a, b);
     if op.swapped { binary(op.second, dst, c, t) } else { binary(op.second, dst, t, c) }

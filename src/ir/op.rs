@@ -63,6 +63,19 @@ pub struct Pair {
     pub swapped: bool,
 }
 
+impl Pair {
+    /// The operations that may come first.
+    pub const FIRST: [Binary; 4] = [Binary::Add, Binary::Sub, Binary::Mul, Binary::Div];
+    /// The operations that may come second.
+    pub const SECOND: [Binary; 6] = [Binary::Add, Binary::Sub, Binary::Mul, Binary::Div, Binary::Min, Binary::Max];
+
+    /// Is it one of the pairs that run as one loop over lanes? Sums and products are the same either way, and have one for both.
+    pub fn has_loop(self) -> bool {
+        let either = matches!(self.second, Binary::Add | Binary::Mul);
+        Pair::FIRST.contains(&self.first) && Pair::SECOND.contains(&self.second) && !(self.swapped && either)
+    }
+}
+
 /// Two floats to an int, 1 for true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "each is the comparison of its name")]

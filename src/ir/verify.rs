@@ -111,6 +111,7 @@ impl Walk<'_> {
         match instr {
             Instr::Unary(_, d, a) | Instr::Derivative(d, a, _) => self.kinds(&[*d, *a], Kind::Float),
             Instr::Binary(_, d, a, b) => self.kinds(&[*d, *a, *b], Kind::Float),
+            Instr::Fused(op, ..) if !op.has_loop() => Err(format!("{op:?} has no loop over lanes")),
             Instr::Fused(_, d, [a, b, c]) => self.kinds(&[*d, *a, *b, *c], Kind::Float),
             Instr::Compare(_, d, a, b) => self.kinds(&[*a, *b], Kind::Float).and(self.kinds(&[*d], Kind::Int)),
             Instr::IntToFloat(d, a) => self.kinds(&[*d], Kind::Float).and(self.kinds(&[*a], Kind::Int)),

@@ -25,14 +25,18 @@ const RULE: [(f64, f64); NODES] =
     [(0.0, 1.0 / 12.0), (0.276_393_202_250_021, 5.0 / 12.0), (0.723_606_797_749_979, 5.0 / 12.0), (1.0, 1.0 / 12.0)];
 const NODES: usize = 4;
 
-/// What the nodes of a line count in the third difference: 0 for a parabola, 1 for a step between the outer two.
+/// What the nodes of a line count in the third difference: 0 for a parabola, 1 to 1.24 for a step of 1 between two of them.
 const THIRD: [f64; NODES] = [-1.0, 2.236_067_977_499_79, -2.236_067_977_499_79, 1.0];
 
 /// A patch that bends along one axis by less than this part of what it bends along the other is halved across the other only.
 ///
-/// A step at one height, such as a refraction has where its facets end, else takes as many patches as will fit along
-/// it before their share of the error is small, all of which err in the same direction.
+/// A step at one height, such as a refraction has where its facets end, would otherwise take as many patches as fit along it
+/// before their share of the error is small, all of which err in the same direction.
 const SMOOTH: f64 = 0.1;
+
+/// By how many tolerances a line of a quarter may bend along the axis that is not halved: the rule, which is exact for
+/// bends of the third and the two next degrees, errs by a small part of that, and no later round looks at it again.
+const FLAT: f64 = 10.0;
 
 const POINTS: usize = NODES * NODES;
 const PATCHES: usize = LANES / POINTS;
@@ -40,7 +44,7 @@ const PATCHES: usize = LANES / POINTS;
 /// Patches with more samples are refined whatever the rule says.
 const FEW: usize = 8;
 
-/// A refinement ends here: a cell is then 1e-6 of its first size.
+/// A refinement ends here: each side of a cell that is refined is then a thousandth of its first length.
 const DEEPEST: u32 = 10;
 
 /// A rectangle of the chart with the samples that fell into it.
@@ -275,7 +279,8 @@ fn unsettled(quarters: &[(Patch, usize)], values: &[Estimate], change: [f64; 4],
 /// The quarters of a patch, or only its halves along an axis if next to nothing happens along the other.
 fn kept_apart(quarters: Vec<(Patch, usize)>, values: &[Estimate], axis: usize) -> (Vec<(Patch, usize)>, Vec<Estimate>) {
     let bend = |axis: usize| values.iter().map(|value| value.bend[axis]).sum::<f64>();
-    if bend(1 - axis) >= SMOOTH * bend(axis) {
+    let flat = FLAT * (NODES * values.len()) as f64;
+    if bend(1 - axis) >= (SMOOTH * bend(axis)).min(flat) {
         return (quarters, values.to_vec());
     }
     let mut quarters = quarters.into_iter();
@@ -456,8 +461,11 @@ mod tests {
 
     #[test]
     fn a_step_at_one_height_is_found() {
-        // A lobe toward -z that ends at the height of -0.5, where its integral from there on is known.
-        let lobe = |w: Vec3| if w.z < -0.5 { (4.0 * (f64::from(w.z) + 0.5)).exp() } else { 0.0 };
+        // It brightens up to the height of -0.5, where it ends; its swaying around the axis adds nothing.
+        let lobe = |w: Vec3| {
+            let sway = 1.0 + 0.3 * (3.0 * f64::from(w.y).atan2(f64::from(w.x))).cos();
+            if w.z < -0.5 { sway * (4.0 * (f64::from(w.z) + 0.5)).exp() } else { 0.0 }
+        };
         let expected = 2.0 * PI * (1.0 - (-2.0f64).exp()) / 4.0;
         for seed in 0..40 {
             let mut random = Random(seed);
@@ -477,7 +485,7 @@ mod tests {
             });
             let (total, error) = (integrals.total()[0], integrals.error[0]);
             assert!((total - expected).abs() < error + 1e-5, "{seed}: {total}, not {expected} +- {error}");
-            assert!(integrals.directions < 60_000, "{seed}: {}", integrals.directions);
+            assert!(integrals.directions < 100_000, "{seed}: {}", integrals.directions);
         }
     }
 

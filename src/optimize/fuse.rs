@@ -15,7 +15,7 @@ use std::collections::HashMap;
 struct First {
     /// Its place in its block.
     at: usize,
-    /// When it ran, counted in writes of the walk.
+    /// When it ran, counted in instructions.
     time: u32,
     op: Binary,
     operands: [Reg; 2],
@@ -25,7 +25,7 @@ struct Walk<'p> {
     regs: &'p [RegInfo],
     /// How often each register is read in the whole program.
     reads: Vec<u32>,
-    /// When each register was written last, counted in writes of the walk.
+    /// When each register was written last, counted in instructions.
     written: Vec<u32>,
     time: u32,
 }
@@ -79,8 +79,7 @@ impl Walk<'_> {
 
     /// Is the result a register that vanishes when its one reader computes it?
     fn may_be_first(&self, op: Binary, dst: Reg) -> bool {
-        let once = self.reads[dst.0 as usize] == 1 && !self.regs[dst.0 as usize].mutable;
-        once && matches!(op, Binary::Add | Binary::Sub | Binary::Mul | Binary::Div)
+        self.reads[dst.0 as usize] == 1 && !self.regs[dst.0 as usize].mutable && Pair::FIRST.contains(&op)
     }
 
     /// The place of a first operation and the instruction that does it and this one.
@@ -91,8 +90,7 @@ impl Walk<'_> {
         dst: Reg,
         [a, b]: [Reg; 2],
     ) -> Option<(usize, Instr)> {
-        use Binary::*;
-        if !matches!(second, Add | Sub | Mul | Div | Min | Max) {
+        if !Pair::SECOND.contains(&second) {
             return None;
         }
         let first = |t: Reg| {
@@ -105,7 +103,7 @@ impl Walk<'_> {
         let (first, c, swapped) = match (first(a), first(b)) {
             (Some(first), _) => (first, b, false),
             // Sums and products are the same either way, and need one loop instead of two.
-            (None, first) => (first?, a, !matches!(second, Add | Mul)),
+            (None, first) => (first?, a, !matches!(second, Binary::Add | Binary::Mul)),
         };
         let [a, b] = first.operands;
         Some((first.at, Instr::Fused(Pair { first: first.op, second, swapped }, dst, [a, b, c])))

@@ -184,7 +184,7 @@ fn light_savings(scene: &Scene, plan: &Plan, settings: &Settings, savings: &mut 
         let side = scene.background.map_or(0, |b| b.resolution.max(32));
         let cost = match background_cost(scene, settings) {
             Some(ns) => format!(
-                "{:.1} ms for a table of {side} x {side}, and one evaluation of the lobes and one shadow ray a hit",
+                "{:.2} ms for a table of {side} x {side}, and one evaluation of the lobes and one shadow ray a hit",
                 ns * f64::from(side * side) * 1e-6
             ),
             None => "one evaluation of the lobes and one shadow ray a hit".into(),

@@ -4,6 +4,7 @@
 //! the same ones at the same bounce whatever happened before, so that paths of a pixel stay stratified against each
 //! other however they branch.
 
+use super::block::{Row, WIDTH};
 use multiversion::multiversion;
 use sobol_burley::{NUM_DIMENSION_SETS_4D, parts};
 use std::sync::LazyLock;
@@ -34,9 +35,6 @@ pub fn dimension_set(bounce: u32, what: Use) -> u32 {
 pub fn pixel_seed(seed: u32, x: u32, y: u32, half: u32) -> u32 {
     mix(mix(mix(seed ^ 0x9e37_79b9).wrapping_add(x)).wrapping_add(y)) ^ half.wrapping_mul(0xa511_e9b3)
 }
-
-/// Lanes that are worked on at a time.
-const WIDTH: usize = 16;
 
 /// Up to four numbers in [0, 1) a lane, a column each: of sample `indices[i]` of the pixel of `seeds[i]`; all of one
 /// length.
@@ -90,7 +88,7 @@ fn sobol_lanes(seeds: &[u32], indices: &[u32], set: u32, vectors: &Vectors, out:
                     sum[i] ^= vector[k] & (((index[i] << bit) as i32 >> 31) as u32);
                 }
             }
-            let mut block = [0.0; WIDTH];
+            let mut block: Row = [0.0; WIDTH];
             for i in 0..WIDTH {
                 let scramble = parts::hash(seed[i].wrapping_mul(0x9c8f_2d3b) ^ set ^ key);
                 block[i] = unit(parts::owen_scramble_rev(sum[i], scramble).reverse_bits());

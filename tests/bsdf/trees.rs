@@ -6,6 +6,7 @@ use glam::Vec3;
 use velour::closure::settings::{Settings, Shadowing};
 use velour::closure::tree::{Floats, Ints, Node, Param, Tree};
 use velour::closure::{Evaluation, Lobes, Samples, event};
+use velour::exec::MAX_LANES;
 use velour::lang::closures::ClosureTable;
 use velour::lang::symbols::Symbol;
 use velour::math::columns::Column3;
@@ -225,7 +226,7 @@ fn everything(table: &ClosureTable, lanes: std::ops::Range<usize>) -> Tree {
     let mut tree = Tree::default();
     tree.clear(lanes.len());
     let column = |tree: &mut Tree, f: &dyn Fn(f32) -> f32| {
-        let values: Vec<f32> = lanes.clone().map(|k| f(k as f32 / 128.0)).collect();
+        let values: Vec<f32> = lanes.clone().map(|k| f(k as f32 / MAX_LANES as f32)).collect();
         tree.varying(&values)
     };
     let n = [column(&mut tree, &|t| 0.3 * (9.0 * t).sin()), Floats::Uniform(0.1), Floats::Uniform(1.0)];
@@ -272,12 +273,68 @@ fn lanes_know_nothing_of_each_other() {
         lobes.evaluate(&Column3::splat(narrow(direction(0.7, 2.0)), n), &mut out);
         (samples, out)
     };
-    let (samples, out) = run(0..128);
+    let (samples, out) = run(0..MAX_LANES);
     assert!(samples.event.contains(&event::GLOSSY) && samples.event.contains(&event::DIFFUSE));
-    for k in 0..128 {
+    for k in (0..MAX_LANES).step_by(3) {
         let (s, o) = run(k..k + 1);
         assert_eq!(s.weight.get(0), samples.weight.get(k), "lane {k}");
         assert_eq!((s.wi.get(0), s.pdf[0], s.event[0]), (samples.wi.get(k), samples.pdf[k], samples.event[k]));
         assert_eq!((o.f_cos.get(0), o.pdf[0]), (out.f_cos.get(k), out.pdf[k]), "lane {k}");
+    }
+}
+
+/// A tree that shines through a sheen, and has a hole in it.
+fn shining(table: &ClosureTable, lanes: usize) -> Tree {
+    let mut tree = Tree::default();
+    tree.clear(lanes);
+    let column = tree.varying(&(0..lanes).map(|k| k as f32 * 0.25).collect::<Vec<f32>>());
+    let light = tree.leaf(id(table, "emission"), &[], &[]);
+    let light = tree.scale(Some(light), [column, Floats::Uniform(2.0), column]);
+    let hole = tree.leaf(id(table, "holdout"), &[], &[]);
+    let sum = tree.add(light, Some(hole));
+    let params = [Param::Closure(sum), up(), triple(0.5, 0.5, 0.5), float(0.3)];
+    tree.root = Some(tree.leaf(id(table, "sheen"), &params, &[]));
+    tree
+}
+
+#[test]
+fn batches_know_nothing_of_those_before() {
+    let table = ClosureTable::standard();
+    let empty = |lanes: usize| {
+        let mut tree = Tree::default();
+        tree.clear(lanes);
+        tree
+    };
+    let trees = [
+        everything(&table, 0..128),
+        shining(&table, 128),
+        everything(&table, 128..256),
+        shining(&table, 7),
+        empty(7),
+        everything(&table, 0..7),
+        shining(&table, 3),
+        everything(&table, 0..MAX_LANES),
+        empty(MAX_LANES),
+        everything(&table, 100..128),
+    ];
+    let all = |lobes: &mut Lobes, tree: &Tree| {
+        let n = tree.lanes;
+        let (mut wo, mut xi) = (Column3::zeros(n), Column3::zeros(n));
+        let mut random = Random(SEED);
+        for lane in 0..n {
+            let mut next = || random.number();
+            wo.set(lane, narrow(direction(f64::from(next()), 6.0 * f64::from(next()))));
+            xi.set(lane, Vec3::new(next(), next(), next()));
+        }
+        lobes.flatten(&table, tree, &wo, &Column3::splat(Vec3::Z, n));
+        let mut samples = Samples::default();
+        lobes.sample(&xi, &mut samples);
+        let light = evaluate(lobes, n, narrow(direction(0.7, 2.0)));
+        (samples, light, lobes.emission().clone(), lobes.holdout().clone(), lobes.describe(n - 1))
+    };
+    let mut used = Lobes::new(Settings::default());
+    for (k, tree) in trees.iter().enumerate() {
+        let fresh = all(&mut Lobes::new(Settings::default()), tree);
+        assert!(all(&mut used, tree) == fresh, "tree {k}");
     }
 }

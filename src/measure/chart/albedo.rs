@@ -171,7 +171,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     Ok(Figure {
         name: "albedo",
         title: "Directional albedo of the sheen: cost against error".to_owned(),
-        cost: "ns an albedo, 128 lanes of one roughness at a time".to_owned(),
+        cost: format!("ns an albedo, {LANES} lanes of one roughness at a time"),
         error: "largest error of the albedo".to_owned(),
         meaning: format!(
             "{MEDIANS} Error: the largest difference from the directional albedo integrated in f64 (softened exact term, F = 1, with the fitted Lambda, which is 7e-5 of the longest polynomial's error) for \

@@ -135,7 +135,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     Ok(Figure {
         name: "lambda",
         title: "Lambda of the sheen: cost against error".to_owned(),
-        cost: "ns a direction, 128 lanes at a time".to_owned(),
+        cost: format!("ns a direction, {LANES} lanes at a time"),
         error: "largest relative error of Lambda".to_owned(),
         meaning: format!(
             "{MEDIANS} Error: the largest relative error of Lambda for roughness 0.06 to 1 and cosines 0.02 to 0.98, against \

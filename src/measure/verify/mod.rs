@@ -28,7 +28,8 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use view::View;
 
-/// The probability that a right build fails in some chi-square test of the run.
+/// The most probability with which a right build fails in some chi-square test of the run; as tests below it are looked at a second
+/// time, which one view in a hundred costs, it is far less.
 const LEVEL: f64 = 0.01;
 
 /// How much work goes into a verification.
@@ -129,8 +130,9 @@ fn judge(report: &mut Report) {
     }
 }
 
-/// All findings of one variant. What a first look condemns, or might, is looked at again with more directions
-/// and other samples, and that verdict holds: a wrong lobe fails twice, an edge that an integral passed over does not.
+/// All findings of one variant. One that a first look condemns, or that has a chi-square below [`LEVEL`], is looked at again with
+/// more directions and other samples, and that verdict holds: a wrong lobe fails twice, an edge that an integral passed
+/// over does not.
 pub fn examine(subject: &dyn Subject, variant: usize, effort: &Effort) -> Vec<Finding> {
     let first = examine_once(subject, variant, effort);
     let doubtful = |finding: &Finding| match finding.check {
