@@ -7,9 +7,9 @@ use crate::math::columns::Column3;
 /// How many points a batch holds at most, and by default.
 ///
 /// Decision (2026-11-23): 512, because the fixed costs of a batch (decoding its instructions, visiting the nodes of its tree) are some
-/// 2 µs, and columns of two kilobytes still lie in the second cache: a weave with its lobes takes 48 ns a point instead of 51
-/// (256 lanes) or 59 (128), its pattern 28 instead of 29 or 32, a loop of 110 operations 24 instead of 26 or 32; scenes render as
-/// fast or up to 10 % faster; instead of 128, whose columns lie in the first cache.
+/// 2 µs, and columns of two kilobytes still lie in the second cache: a weave with its lobes took 48 ns a point instead of 51
+/// (256 lanes) or 59 (128), its pattern 28 instead of 29 or 32, a loop of 110 operations 24 instead of 26 or 32 (before pairs
+/// of operations were fused); scenes render as fast or up to 10 % faster; instead of 128, whose columns lie in the first cache.
 pub const MAX_LANES: usize = 512;
 
 /// Bits of [`Points::ray_type`], tested by `raytype("…")`.
