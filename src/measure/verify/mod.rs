@@ -130,7 +130,7 @@ fn judge(report: &mut Report) {
     }
 }
 
-/// All findings of one variant. One that a first look condemns, or that has a chi-square below [`LEVEL`], is looked at again with
+/// All findings of one variant. One that a first look condemns, or that has a chi-square below 0.01, is looked at again with
 /// more directions and other samples, and that verdict holds: a wrong lobe fails twice, an edge that an integral passed
 /// over does not.
 pub fn examine(subject: &dyn Subject, variant: usize, effort: &Effort) -> Vec<Finding> {
