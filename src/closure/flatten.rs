@@ -16,8 +16,8 @@ use crate::math::columns::Column3;
 use smallvec::SmallVec;
 
 /// More lobes or pending weights than this are dropped and reported: a shared base under many different layers could
-/// otherwise grow without bound. So many lobes take a quarter of a gigabyte in a batch of 512 lanes.
-const MOST: usize = 1 << 15;
+/// otherwise grow without bound. So many lobes take a gigabyte in a batch of 512 lanes.
+const MOST: usize = 1 << 17;
 /// How many dropped lanes are listed.
 const MOST_DROPPED: usize = 256;
 
