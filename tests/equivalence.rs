@@ -118,7 +118,7 @@ fn shaders_with_much_control_flow() {
            if (u > 0.9) exit(); Ci = sheen(Ci, N, color(u), v); printf(\"%s\\n\", Ci); }",
         "shader s(output string t = \"\") { t = u > 0.5 ? \"a\" : \"b\"; for (int i = 0; i < v * 4; ++i) t = concat(t, format(\"%d\", i)); printf(\"%s\", t); }",
         "void f(output float a, output float b) { a = b + 1; b = a * 2; } shader s(output float x = 1, output float y = 2) { if (u > 0.3) f(x, y); do { f(y, x); if (x > 40 * v) break; } while (x < 30); }",
-        "shader s(output float a = 0, output float b = 0) { float x = u; for (int i = 0; i < 3; ++i) { if (v > 0.5) x = sin(x) * P[0]; else x += x * x; } a = Dx(x); b = Dy(x) + filterwidth(spline(\"bspline\", x, 0.0, 1.0, 0.0, 1.0)); }",
+        "shader s(output float a = 0, output float b = 0) { float x = u; float k[4] = {0, 1, 0, 1}; for (int i = 0; i < 3; ++i) { if (v > 0.5) x = sin(x) * P[0]; else x += x * x; } a = Dx(x); b = Dy(x) + filterwidth(spline(\"bspline\", x, k)); }",
     ];
     for text in texts {
         same_everywhere(text);
