@@ -211,7 +211,7 @@ impl Surfaces {
         if inside || broken || constant.iter().any(|v| !v.is_finite()) {
             let finite = params.iter().all(|&param| match param {
                 Floats::Uniform(value) => value.is_finite(),
-                Floats::Varying(at) => all_finite(&tree.floats[at as usize..at as usize + self.lanes]),
+                Floats::Varying(at) => all_finite(tree.column(at)),
             });
             if broken || !finite {
                 surface.gate = self.push_gate(tree, &surface, params, broken);
@@ -251,7 +251,7 @@ impl Surfaces {
         let at = self.data.len();
         match (param, flip) {
             (Floats::Varying(from), None) if finite => {
-                self.data.extend_from_slice(&tree.floats[from as usize..from as usize + self.lanes]);
+                self.data.extend_from_slice(tree.column(from));
             }
             (Floats::Uniform(value), None) => {
                 self.data.resize(at + self.lanes, if value.is_finite() { value } else { 0.0 });
@@ -351,7 +351,7 @@ fn any(values: &[f32]) -> bool {
 fn column_of<'a>(tree: &'a Tree, from: Floats, single: &'a [f32]) -> &'a [f32] {
     match from {
         Floats::Uniform(_) => single,
-        Floats::Varying(at) => &tree.floats[at as usize..at as usize + tree.lanes],
+        Floats::Varying(at) => tree.column(at),
     }
 }
 

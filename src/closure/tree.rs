@@ -193,6 +193,11 @@ impl Tree {
         Ints::Varying(at)
     }
 
+    /// The lanes of a varying column, from its offset.
+    pub fn column(&self, at: u32) -> &[f32] {
+        &self.floats[at as usize..at as usize + self.lanes]
+    }
+
     /// The float of one lane.
     #[inline(always)]
     pub fn float(&self, column: Floats, lane: usize) -> f32 {

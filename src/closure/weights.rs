@@ -37,7 +37,7 @@ impl<'a> Operand<'a> {
     pub fn of(tree: &'a Tree, from: Floats) -> Self {
         match from {
             Floats::Uniform(value) => Operand::One(value),
-            Floats::Varying(at) => Operand::Many(&tree.floats[at as usize..at as usize + tree.lanes]),
+            Floats::Varying(at) => Operand::Many(tree.column(at)),
         }
     }
 }

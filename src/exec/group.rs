@@ -4,6 +4,7 @@ use crate::ir::op::{Input, Routine};
 use crate::ir::program::*;
 use crate::lang::closures::{ClosureTable, Model};
 use crate::lang::globals::Global;
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use velour_grammar::Span;
@@ -156,7 +157,7 @@ fn mark_conditions(block: &Block, read: &mut [u32]) {
 
 /// Marks the registers that [`Group::spent`] tells of.
 fn mark_spent(program: &Program, block: &Block, read: &[u32], spent: &mut [bool]) {
-    let mut written = Vec::new();
+    let mut written = HashSet::new();
     for node in block {
         match node {
             Node::Instr(instr) => {
@@ -166,7 +167,9 @@ fn mark_spent(program: &Program, block: &Block, read: &[u32], spent: &mut [bool]
                     let own = from.source == Source::Code && !from.mutable && written.contains(src);
                     spent[src.0 as usize] = columns && own && read[src.0 as usize] == 1;
                 }
-                instr.writes(|reg| written.push(reg));
+                instr.writes(|reg| {
+                    written.insert(reg);
+                });
             }
             Node::If(_, a, b) => [a, b].into_iter().for_each(|block| mark_spent(program, block, read, spent)),
             Node::Loop { head, body, .. } => {

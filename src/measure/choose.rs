@@ -13,8 +13,8 @@ use crate::closure::settings::{Shadowing, SheenAlbedo};
 use crate::measure::chart::truth::{self, albedos, cosines};
 use std::fmt;
 
-/// Cost of a sheen lobe by its shadowing term, ns to evaluate a direction softened, as the figure `visibility` of `velour chart` had it for batches
-/// of 128 lanes on one core of a 2-core AMD EPYC with AVX2. Only their order counts.
+/// Cost of a softened sheen lobe by its shadowing term, ns to evaluate a direction, as the figure `visibility` of `velour
+/// chart` had it for batches of 128 lanes on one core of a 2-core AMD EPYC with AVX2. Only their order counts.
 const SHADOWING_COSTS: [(Shadowing, f64); 4] =
     [(Shadowing::Ashikhmin, 7.4), (Shadowing::Exact, 9.5), (Shadowing::Series, 11.2), (Shadowing::Published, 17.0)];
 
