@@ -3,7 +3,7 @@
 //! `cargo bench --bench elementary` prints the time of 1024 lanes; items per second are lanes.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use multiversion::multiversion;
+use velour::lanes;
 use velour::math::elementary as e;
 use velour::math::noise::{Endless, cell, perlin, simplex};
 
@@ -14,15 +14,16 @@ fn main() {
 }
 
 /// Defines a benchmark that applies an expression to lanes between two bounds.
-macro_rules! lanes {
+macro_rules! timed {
     ($($name:ident: $low:expr, $high:expr, |$x:ident| $value:expr;)*) => {$(
         #[divan::bench]
         fn $name(bencher: Bencher) {
-            #[multiversion(targets("x86_64+avx512f+avx512bw+avx512cd+avx512dq+avx512vl", "x86_64+avx+avx2+fma"))]
-            fn run(input: &[f32], output: &mut [f32]) {
-                for (o, i) in output.iter_mut().zip(input) {
-                    let $x = *i;
-                    *o = $value;
+            lanes! {
+                fn run(input: &[f32], output: &mut [f32]) {
+                    for (o, i) in output.iter_mut().zip(input) {
+                        let $x = *i;
+                        *o = $value;
+                    }
                 }
             }
             let step = ($high - $low) / LANES as f32;
@@ -35,7 +36,7 @@ macro_rules! lanes {
     )*};
 }
 
-lanes! {
+timed! {
     exp: -80.0, 80.0, |x| e::exp(x);
     exp2: -120.0, 120.0, |x| e::exp2(x);
     expm1: -80.0, 80.0, |x| e::expm1(x);

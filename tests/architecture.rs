@@ -13,7 +13,7 @@ const ROOMS: &[&str] = &[
 const EXCEPTIONS: &[(&str, &str)] = &[];
 
 /// Files that may contain `unsafe`.
-const UNSAFE: &[&str] = &["render/accel/prefetch.rs"];
+const UNSAFE: &[&str] = &["render/accel/prefetch.rs", "math/instruction_set.rs"];
 
 /// Files that may print or end the process, besides the command line.
 const SPEAKERS: &[&str] = &["main.rs"];

@@ -3,12 +3,12 @@
 use super::Table;
 use super::hand::{self, Batch, Columns, N, World, at, columns, cut, directions, numbers, views};
 use glam::Vec3;
-use multiversion::multiversion;
 use velour::bsdf::fresnel::Dielectric;
 use velour::bsdf::microfacet::{Beckmann, Ggx, Microfacet};
 use velour::bsdf::sheen::{EXACT, Sheen};
 use velour::bsdf::{Scatter, burley, eon, lambert, oren_nayar, params, velvet};
 use velour::closure::{Evaluation, Samples};
+use velour::lanes;
 use velour::math::columns::Column3;
 use velour::math::frame::Frame;
 
@@ -52,27 +52,28 @@ fn lobe<M: Scatter>(table: &Table, name: &str, closure: &str, model: M) {
     );
 }
 
-/// Figure 1 of the paper as one loop: sheen over Lambert, layering `min`, one frame and one roughness.
-#[multiversion(targets("x86_64+avx2"))]
-fn cloth(
-    sheen: Sheen<EXACT, true>,
-    view: &[Vec<f32>; 5],
-    alpha_o: &[f32],
-    wo: Columns<'_>,
-    wi: Columns<'_>,
-    f_cos: &mut [f32],
-    pdf: &mut [f32],
-) {
-    let n = f_cos.len();
-    let (alpha_o, wo, wi, pdf) = (&alpha_o[..n], cut(wo, n), cut(wi, n), &mut pdf[..n]);
-    let (a, b, c, d, e) = (&view[0][..n], &view[1][..n], &view[2][..n], &view[3][..n], &view[4][..n]);
-    for i in 0..n {
-        let (o, l) = (at(wo, i), at(wi, i));
-        let value = sheen.eval_from(o, [a[i], b[i], c[i], d[i], e[i]], l);
-        let alpha_i = 1.0 - 0.8 * sheen.albedo(l.z);
-        let diffuse = l.z.max(0.0) * std::f32::consts::FRAC_1_PI;
-        f_cos[i] = 0.8 * value.f_cos + diffuse * alpha_i.min(alpha_o[i]);
-        pdf[i] = 0.3 * value.pdf + 0.7 * diffuse;
+lanes! {
+    /// Figure 1 of the paper as one loop: sheen over Lambert, layering `min`, one frame and one roughness.
+    fn cloth(
+        sheen: Sheen<EXACT, true>,
+        view: &[Vec<f32>; 5],
+        alpha_o: &[f32],
+        wo: Columns<'_>,
+        wi: Columns<'_>,
+        f_cos: &mut [f32],
+        pdf: &mut [f32],
+    ) {
+        let n = f_cos.len();
+        let (alpha_o, wo, wi, pdf) = (&alpha_o[..n], cut(wo, n), cut(wi, n), &mut pdf[..n]);
+        let (a, b, c, d, e) = (&view[0][..n], &view[1][..n], &view[2][..n], &view[3][..n], &view[4][..n]);
+        for i in 0..n {
+            let (o, l) = (at(wo, i), at(wi, i));
+            let value = sheen.eval_from(o, [a[i], b[i], c[i], d[i], e[i]], l);
+            let alpha_i = 1.0 - 0.8 * sheen.albedo(l.z);
+            let diffuse = l.z.max(0.0) * std::f32::consts::FRAC_1_PI;
+            f_cos[i] = 0.8 * value.f_cos + diffuse * alpha_i.min(alpha_o[i]);
+            pdf[i] = 0.3 * value.pdf + 0.7 * diffuse;
+        }
     }
 }
 

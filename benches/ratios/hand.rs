@@ -1,12 +1,12 @@
 //! What the rows share: points, shaders, directions, and lobes as one loop over lanes.
 
 use glam::Vec3;
-use multiversion::multiversion;
 use std::hint::black_box;
 use velour::bsdf::Scatter;
 use velour::closure::{Evaluation, Lobes, Settings};
 use velour::compile::Compiler;
 use velour::exec::{Group, MAX_LANES, Machine, Points};
+use velour::lanes;
 use velour::math::columns::Column3;
 use velour::math::frame::Frame;
 use velour::math::warp::uniform_hemisphere;
@@ -144,26 +144,27 @@ impl World {
     }
 }
 
-/// One lobe as one loop, from world directions to color times cosine and density. Light that crosses the geometric surface is
-/// cut off.
-#[multiversion(targets("x86_64+avx2"))]
-pub fn evaluate<M: Scatter>(model: M, world: &World, wi: Columns<'_>, out: [&mut [f32]; 3], pdf: &mut [f32]) {
-    let n = pdf.len();
-    let [x, y, z] = out;
-    let (x, y, z, wi) = (&mut x[..n], &mut y[..n], &mut z[..n], cut(wi, n));
-    let [outside, wo, weight] = [of(&world.wo[0], n), of(&world.wo[1], n), of(&world.weight, n)];
-    let [t, b, s, g] = [of(&world.axes[0], n), of(&world.axes[1], n), of(&world.axes[2], n), of(&world.axes[3], n)];
-    let v = &world.view;
-    let v = [&v[0][..n], &v[1][..n], &v[2][..n], &v[3][..n], &v[4][..n]];
-    for i in 0..n {
-        let w = at(wi, i);
-        let local = Vec3::new(w.dot(at(t, i)), w.dot(at(b, i)), w.dot(at(s, i)));
-        let ng = at(g, i);
-        let visible = ng.dot(w) * 1f32.copysign(ng.dot(at(outside, i))) > 0.0;
-        let value = model.eval_from(at(wo, i), [v[0][i], v[1][i], v[2][i], v[3][i], v[4][i]], local);
-        let f_cos = if visible { value.f_cos } else { 0.0 };
-        (x[i], y[i], z[i]) = (weight[0][i] * f_cos, weight[1][i] * f_cos, weight[2][i] * f_cos);
-        pdf[i] = value.pdf;
+lanes! {
+    /// One lobe as one loop, from world directions to color times cosine and density. Light that crosses the geometric surface is
+    /// cut off.
+    pub fn evaluate<M: Scatter>(model: M, world: &World, wi: Columns<'_>, out: [&mut [f32]; 3], pdf: &mut [f32]) {
+        let n = pdf.len();
+        let [x, y, z] = out;
+        let (x, y, z, wi) = (&mut x[..n], &mut y[..n], &mut z[..n], cut(wi, n));
+        let [outside, wo, weight] = [of(&world.wo[0], n), of(&world.wo[1], n), of(&world.weight, n)];
+        let [t, b, s, g] = [of(&world.axes[0], n), of(&world.axes[1], n), of(&world.axes[2], n), of(&world.axes[3], n)];
+        let v = &world.view;
+        let v = [&v[0][..n], &v[1][..n], &v[2][..n], &v[3][..n], &v[4][..n]];
+        for i in 0..n {
+            let w = at(wi, i);
+            let local = Vec3::new(w.dot(at(t, i)), w.dot(at(b, i)), w.dot(at(s, i)));
+            let ng = at(g, i);
+            let visible = ng.dot(w) * 1f32.copysign(ng.dot(at(outside, i))) > 0.0;
+            let value = model.eval_from(at(wo, i), [v[0][i], v[1][i], v[2][i], v[3][i], v[4][i]], local);
+            let f_cos = if visible { value.f_cos } else { 0.0 };
+            (x[i], y[i], z[i]) = (weight[0][i] * f_cos, weight[1][i] * f_cos, weight[2][i] * f_cos);
+            pdf[i] = value.pdf;
+        }
     }
 }
 
@@ -173,31 +174,32 @@ fn of(w: &Column3, n: usize) -> Columns<'_> {
     [&w.x[..n], &w.y[..n], &w.z[..n]]
 }
 
-/// One lobe of weight 1 as one loop: a direction in the world, its density and its weight.
-#[multiversion(targets("x86_64+avx2"))]
-pub fn sample<M: Scatter>(
-    model: M,
-    frame: Frame,
-    view: &[Vec<f32>; 5],
-    wo: Columns<'_>,
-    xi: Columns<'_>,
-    wi: [&mut [f32]; 3],
-    weight: &mut [f32],
-    pdf: &mut [f32],
-) {
-    let n = weight.len();
-    let (wo, xi, pdf) = (cut(wo, n), cut(xi, n), &mut pdf[..n]);
-    let [x, y, z] = wi;
-    let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
-    let (a, b, c, d, e) = (&view[0][..n], &view[1][..n], &view[2][..n], &view[3][..n], &view[4][..n]);
-    for i in 0..n {
-        let seen = [a[i], b[i], c[i], d[i], e[i]];
-        let local = model.sample_from(at(wo, i), seen, at(xi, i));
-        let value = model.eval_from(at(wo, i), seen, local);
-        let world = frame.to_world(local);
-        (x[i], y[i], z[i]) = (world.x, world.y, world.z);
-        let good = value.pdf > 0.0;
-        weight[i] = if good { value.f_cos / value.pdf.max(f32::MIN_POSITIVE) } else { 0.0 };
-        pdf[i] = if good { value.pdf } else { 0.0 };
+lanes! {
+    /// One lobe of weight 1 as one loop: a direction in the world, its density and its weight.
+    pub fn sample<M: Scatter>(
+        model: M,
+        frame: Frame,
+        view: &[Vec<f32>; 5],
+        wo: Columns<'_>,
+        xi: Columns<'_>,
+        wi: [&mut [f32]; 3],
+        weight: &mut [f32],
+        pdf: &mut [f32],
+    ) {
+        let n = weight.len();
+        let (wo, xi, pdf) = (cut(wo, n), cut(xi, n), &mut pdf[..n]);
+        let [x, y, z] = wi;
+        let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
+        let (a, b, c, d, e) = (&view[0][..n], &view[1][..n], &view[2][..n], &view[3][..n], &view[4][..n]);
+        for i in 0..n {
+            let seen = [a[i], b[i], c[i], d[i], e[i]];
+            let local = model.sample_from(at(wo, i), seen, at(xi, i));
+            let value = model.eval_from(at(wo, i), seen, local);
+            let world = frame.to_world(local);
+            (x[i], y[i], z[i]) = (world.x, world.y, world.z);
+            let good = value.pdf > 0.0;
+            weight[i] = if good { value.f_cos / value.pdf.max(f32::MIN_POSITIVE) } else { 0.0 };
+            pdf[i] = if good { value.pdf } else { 0.0 };
+        }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::Table;
 use super::hand::{Batch, N};
-use multiversion::multiversion;
 use std::hint::black_box;
+use velour::lanes;
 use velour::math::elementary as e;
 use velour::ops::arithmetic::{div, min, sqrt};
 
@@ -87,11 +87,12 @@ fn rounds<const LIBM: bool>(u: &[f32; BLOCK], v: &[f32; BLOCK], out: &mut [f32; 
 /// Loops over blocks of lanes and of points.
 macro_rules! loops {
     ($($name:ident $function:ident $libm:literal;)*) => {$(
-        #[multiversion(targets("x86_64+avx2"))]
-        fn $name(u: &[f32], v: &[f32], out: &mut [f32]) {
-            let (u, v) = (u.as_chunks::<BLOCK>().0, v.as_chunks::<BLOCK>().0);
-            for ((u, v), out) in u.iter().zip(v).zip(out.as_chunks_mut::<BLOCK>().0) {
-                $function::<$libm>(u, v, out);
+        lanes! {
+            fn $name(u: &[f32], v: &[f32], out: &mut [f32]) {
+                let (u, v) = (u.as_chunks::<BLOCK>().0, v.as_chunks::<BLOCK>().0);
+                for ((u, v), out) in u.iter().zip(v).zip(out.as_chunks_mut::<BLOCK>().0) {
+                    $function::<$libm>(u, v, out);
+                }
             }
         }
     )*};

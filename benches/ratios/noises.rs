@@ -2,25 +2,26 @@
 
 use super::Table;
 use super::hand::{Batch, Columns, N, columns, cut};
-use multiversion::multiversion;
 use std::hint::black_box;
+use velour::lanes;
 use velour::math::columns::Column3;
 use velour::math::noise::{Endless, Periodic, cell, perlin, simplex};
 
 /// Defines a loop over lanes for each noise, in blocks of a fixed length, without which it would not become SIMD.
 macro_rules! loops {
     ($($name:ident |$x:ident, $y:ident, $z:ident| $value:expr;)*) => {$(
-        #[multiversion(targets("x86_64+avx2"))]
-        fn $name(p: Columns<'_>, out: &mut [f32]) {
-            let p = cut(p, N);
-            for block in 0..N / 16 {
-                let mut values = [0.0; 16];
-                for i in 0..16 {
-                    let ($x, $y, $z) = (8.0 * p[0][16 * block + i], 8.0 * p[1][16 * block + i], 8.0 * p[2][16 * block + i]);
-                    let _ = ($y, $z);
-                    values[i] = $value;
+        lanes! {
+            fn $name(p: Columns<'_>, out: &mut [f32]) {
+                let p = cut(p, N);
+                for block in 0..N / 16 {
+                    let mut values = [0.0; 16];
+                    for i in 0..16 {
+                        let ($x, $y, $z) = (8.0 * p[0][16 * block + i], 8.0 * p[1][16 * block + i], 8.0 * p[2][16 * block + i]);
+                        let _ = ($y, $z);
+                        values[i] = $value;
+                    }
+                    out[16 * block..16 * block + 16].copy_from_slice(&values);
                 }
-                out[16 * block..16 * block + 16].copy_from_slice(&values);
             }
         }
     )*};

@@ -3,13 +3,13 @@
 use super::Table;
 use super::hand::{Batch, Columns, N, columns, cut, directions};
 use glam::Vec3;
-use multiversion::multiversion;
 use std::f32::consts::{FRAC_1_PI, PI};
 use std::hint::black_box;
 use velour::bsdf::oren_nayar::OrenNayar;
 use velour::bsdf::sheen::{EXACT, Sheen};
 use velour::bsdf::{Scatter, View, params};
 use velour::closure::Evaluation;
+use velour::lanes;
 use velour::math::elementary as e;
 use velour::math::frame::Frame;
 use velour::math::noise::{Endless, perlin::perlin3};
@@ -136,31 +136,32 @@ fn point<const LIBM: bool, const STAGE: u8>(from: [Vec3; 4], [u, v]: [f32; 2], l
     (out[22][lane], out[23][lane]) = (all.picks[0], all.picks[1]);
 }
 
-/// The same as one loop over lanes, or (`LIBM`) over points.
-#[multiversion(targets("x86_64+avx2"))]
-fn run<const LIBM: bool, const STAGE: u8>(from: Points<'_>, out: &mut [Block]) {
-    let [p, normal, wo, wi] = [cut(from.p, N), cut(from.normal, N), cut(from.wo, N), cut(from.wi, N)];
-    let uv = [&from.uv[0][..N], &from.uv[1][..N]];
-    for (block, out) in out[..N / BLOCK].iter_mut().enumerate() {
-        let first = BLOCK * block;
-        let mut x = [[0.0; BLOCK]; 14];
-        let inputs =
-            [p[0], p[1], p[2], normal[0], normal[1], normal[2], wo[0], wo[1], wo[2], wi[0], wi[1], wi[2], uv[0], uv[1]];
-        for (to, column) in x.iter_mut().zip(inputs) {
-            to.copy_from_slice(&column[first..first + BLOCK]);
-        }
-        for l in 0..BLOCK {
-            let mut triples = [
-                Vec3::new(x[0][l], x[1][l], x[2][l]),
-                Vec3::new(x[3][l], x[4][l], x[5][l]),
-                Vec3::new(x[6][l], x[7][l], x[8][l]),
-                Vec3::new(x[9][l], x[10][l], x[11][l]),
-            ];
-            let mut uv = [x[12][l], x[13][l]];
-            if LIBM {
-                (triples, uv) = black_box((triples, uv));
+lanes! {
+    /// The same as one loop over lanes, or (`LIBM`) over points.
+    fn run<const LIBM: bool, const STAGE: u8>(from: Points<'_>, out: &mut [Block]) {
+        let [p, normal, wo, wi] = [cut(from.p, N), cut(from.normal, N), cut(from.wo, N), cut(from.wi, N)];
+        let uv = [&from.uv[0][..N], &from.uv[1][..N]];
+        for (block, out) in out[..N / BLOCK].iter_mut().enumerate() {
+            let first = BLOCK * block;
+            let mut x = [[0.0; BLOCK]; 14];
+            let inputs =
+                [p[0], p[1], p[2], normal[0], normal[1], normal[2], wo[0], wo[1], wo[2], wi[0], wi[1], wi[2], uv[0], uv[1]];
+            for (to, column) in x.iter_mut().zip(inputs) {
+                to.copy_from_slice(&column[first..first + BLOCK]);
             }
-            point::<LIBM, STAGE>(triples, uv, l, out);
+            for l in 0..BLOCK {
+                let mut triples = [
+                    Vec3::new(x[0][l], x[1][l], x[2][l]),
+                    Vec3::new(x[3][l], x[4][l], x[5][l]),
+                    Vec3::new(x[6][l], x[7][l], x[8][l]),
+                    Vec3::new(x[9][l], x[10][l], x[11][l]),
+                ];
+                let mut uv = [x[12][l], x[13][l]];
+                if LIBM {
+                    (triples, uv) = black_box((triples, uv));
+                }
+                point::<LIBM, STAGE>(triples, uv, l, out);
+            }
         }
     }
 }

@@ -11,8 +11,8 @@ use super::surfaces::{Surface, Surfaces, Values};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, SHORT};
 use crate::bsdf::sheen::charlie::clamp_roughness;
 use crate::bsdf::sheen::shadowing::Shadowing;
+use crate::lanes;
 use crate::math::columns::copy_block;
-use multiversion::multiversion;
 
 /// How many lanes lie together: a few vectors of the widest kind.
 const BLOCK: usize = 16;
@@ -37,33 +37,35 @@ pub fn push_curves(surfaces: &Surfaces, surface: &Surface, curves: &mut Store<Cu
     Some(at as u32)
 }
 
-#[multiversion(targets("x86_64+avx2"))]
-fn curve_lanes<const SOFT: bool>(roughness: &[f32], out: &mut [Curves]) {
-    for (from, out) in roughness.chunks(BLOCK).zip(out) {
-        let mut r = [1.0; BLOCK];
-        copy_block::<BLOCK>(&mut r[..from.len()], from);
-        for l in 0..BLOCK {
-            let terms = AlbedoCurve::new(Shadowing::Exact, SOFT, clamp_roughness(r[l])).terms();
-            for k in 0..SHORT {
-                out[k][l] = terms[k];
+lanes! {
+    fn curve_lanes<const SOFT: bool>(roughness: &[f32], out: &mut [Curves]) {
+        for (from, out) in roughness.chunks(BLOCK).zip(out) {
+            let mut r = [1.0; BLOCK];
+            copy_block::<BLOCK>(&mut r[..from.len()], from);
+            for l in 0..BLOCK {
+                let terms = AlbedoCurve::new(Shadowing::Exact, SOFT, clamp_roughness(r[l])).terms();
+                for k in 0..SHORT {
+                    out[k][l] = terms[k];
+                }
             }
         }
     }
 }
 
-/// The albedos of kept curves at the given cosines, whose sign is ignored: the same bits as from the roughness.
-#[multiversion(targets("x86_64+avx2"))]
-pub fn curve_albedo_lanes(curves: &[Curves], cos: &[f32], out: &mut [f32]) {
-    for ((curves, from), out) in curves.iter().zip(cos.chunks(BLOCK)).zip(out.chunks_mut(BLOCK)) {
-        let (mut c, mut albedo) = ([1.0; BLOCK], [0.0; BLOCK]);
-        copy_block::<BLOCK>(&mut c[..from.len()], from);
-        for l in 0..BLOCK {
-            let mut terms = [0.0; SHORT];
-            for k in 0..SHORT {
-                terms[k] = curves[k][l];
+lanes! {
+    /// The albedos of kept curves at the given cosines, whose sign is ignored: the same bits as from the roughness.
+    pub fn curve_albedo_lanes(curves: &[Curves], cos: &[f32], out: &mut [f32]) {
+        for ((curves, from), out) in curves.iter().zip(cos.chunks(BLOCK)).zip(out.chunks_mut(BLOCK)) {
+            let (mut c, mut albedo) = ([1.0; BLOCK], [0.0; BLOCK]);
+            copy_block::<BLOCK>(&mut c[..from.len()], from);
+            for l in 0..BLOCK {
+                let mut terms = [0.0; SHORT];
+                for k in 0..SHORT {
+                    terms[k] = curves[k][l];
+                }
+                albedo[l] = AlbedoCurve::of(terms).at::<false>(c[l].abs().min(1.0));
             }
-            albedo[l] = AlbedoCurve::of(terms).at::<false>(c[l].abs().min(1.0));
+            copy_block::<BLOCK>(out, &albedo[..from.len()]);
         }
-        copy_block::<BLOCK>(out, &albedo[..from.len()]);
     }
 }

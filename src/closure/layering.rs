@@ -19,9 +19,9 @@ use super::weights::{Operand, multiply};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD};
 use crate::bsdf::specular::{reflection, refraction};
 use crate::bsdf::{GAUSS, between};
+use crate::lanes;
 use crate::math::columns::Column3;
 use glam::Vec3;
-use multiversion::multiversion;
 use std::borrow::Cow;
 
 /// Which direction an albedo is asked for.
@@ -318,13 +318,14 @@ impl Layers {
     }
 }
 
-/// What a top of coverage `t` lets through.
-#[multiversion(targets("x86_64+avx2"))]
-fn alpha_lanes(t: &[f32], top: &[f32], alpha: &mut [f32]) {
-    let n = alpha.len();
-    let (t, top) = (&t[..n], &top[..n]);
-    for i in 0..n {
-        alpha[i] = (1.0 - t[i] * top[i]).clamp(0.0, 1.0);
+lanes! {
+    /// What a top of coverage `t` lets through.
+    fn alpha_lanes(t: &[f32], top: &[f32], alpha: &mut [f32]) {
+        let n = alpha.len();
+        let (t, top) = (&t[..n], &top[..n]);
+        for i in 0..n {
+            alpha[i] = (1.0 - t[i] * top[i]).clamp(0.0, 1.0);
+        }
     }
 }
 

@@ -20,10 +20,10 @@ use crate::bsdf::fresnel::{Dielectric, Fresnel, dielectric};
 use crate::bsdf::microfacet::distribution::Distribution;
 use crate::bsdf::microfacet::{Geometry, Ggx, MIN_ALPHA};
 use crate::bsdf::{params, select};
+use crate::lanes;
 use crate::math::columns::Column3;
 use crate::math::elementary::exp;
 use glam::Vec3;
-use multiversion::multiversion;
 
 /// One medium.
 #[derive(Debug, Default)]
@@ -236,39 +236,40 @@ fn pass_facets(from: Crossing, outside: Triples, alpha: Option<&[f32]>, pass: &m
     }
 }
 
-/// Directions inside a coat from those outside, what part of the light passes the boundary, the ratio of the solid angles
-/// (inside over outside) and that of the cosines (outside over inside). Directions below stay as they are.
-#[multiversion(targets("x86_64+avx2"))]
-fn enter_lanes(
-    from: Crossing<'_>,
-    outside: Triples<'_>,
-    x: &mut [f32],
-    y: &mut [f32],
-    z: &mut [f32],
-    pass: &mut [f32],
-    density: &mut [f32],
-    spread: &mut [f32],
-) {
-    let n = x.len();
-    let (y, z, pass) = (&mut y[..n], &mut z[..n], &mut pass[..n]);
-    let (density, spread, eta) = (&mut density[..n], &mut spread[..n], &from.eta[..n]);
-    let (normal, outside) = (from.normal.narrow(n), outside.narrow(n));
-    for i in 0..n {
-        let (m, w, eta) = (normal.at(i), outside.at(i), eta[i]);
-        let cos = m.dot(w);
-        let above = cos > 0.0;
-        let inverse = 1.0 / eta.max(1e-3);
-        let inner2 = 1.0 - inverse * inverse * (1.0 - cos * cos).max(0.0);
-        // Into a lighter medium some light does not come in at all.
-        let lost = above && inner2 <= 1e-6;
-        let inner = inner2.max(1e-6).sqrt();
-        let bent = (w - m * cos) * inverse + m * inner;
-        let bent = bent * (1.0 / bent.dot(bent).max(1e-12).sqrt());
-        x[i] = select(above, bent.x, w.x);
-        y[i] = select(above, bent.y, w.y);
-        z[i] = select(above, bent.z, w.z);
-        pass[i] = select(lost, 0.0, select(above, 1.0 - dielectric(cos, eta), 1.0));
-        spread[i] = select(lost, 0.0, select(above, cos / inner, 1.0));
-        density[i] = select(lost, 0.0, select(above, inverse * inverse * cos / inner, 1.0));
+lanes! {
+    /// Directions inside a coat from those outside, what part of the light passes the boundary, the ratio of the solid angles
+    /// (inside over outside) and that of the cosines (outside over inside). Directions below stay as they are.
+    fn enter_lanes(
+        from: Crossing<'_>,
+        outside: Triples<'_>,
+        x: &mut [f32],
+        y: &mut [f32],
+        z: &mut [f32],
+        pass: &mut [f32],
+        density: &mut [f32],
+        spread: &mut [f32],
+    ) {
+        let n = x.len();
+        let (y, z, pass) = (&mut y[..n], &mut z[..n], &mut pass[..n]);
+        let (density, spread, eta) = (&mut density[..n], &mut spread[..n], &from.eta[..n]);
+        let (normal, outside) = (from.normal.narrow(n), outside.narrow(n));
+        for i in 0..n {
+            let (m, w, eta) = (normal.at(i), outside.at(i), eta[i]);
+            let cos = m.dot(w);
+            let above = cos > 0.0;
+            let inverse = 1.0 / eta.max(1e-3);
+            let inner2 = 1.0 - inverse * inverse * (1.0 - cos * cos).max(0.0);
+            // Into a lighter medium some light does not come in at all.
+            let lost = above && inner2 <= 1e-6;
+            let inner = inner2.max(1e-6).sqrt();
+            let bent = (w - m * cos) * inverse + m * inner;
+            let bent = bent * (1.0 / bent.dot(bent).max(1e-12).sqrt());
+            x[i] = select(above, bent.x, w.x);
+            y[i] = select(above, bent.y, w.y);
+            z[i] = select(above, bent.z, w.z);
+            pass[i] = select(lost, 0.0, select(above, 1.0 - dielectric(cos, eta), 1.0));
+            spread[i] = select(lost, 0.0, select(above, cos / inner, 1.0));
+            density[i] = select(lost, 0.0, select(above, inverse * inverse * cos / inner, 1.0));
+        }
     }
 }

@@ -6,9 +6,9 @@
 
 use super::batch::Triples;
 use crate::bsdf::select;
+use crate::lanes;
 use crate::math::frame::Frame;
 use glam::Vec3;
-use multiversion::multiversion;
 
 /// Below this the cosine of the viewer counts as negative.
 const LEAST: f32 = 1e-6;
@@ -42,51 +42,52 @@ fn unit_of(g: Vec3, fallback: Vec3) -> (Vec3, bool) {
     (choose(usable, small * (1.0 / small.dot(small).max(1e-30).sqrt()), fallback), finite)
 }
 
-/// Unit normals to shade with; `inside` is 1 where the viewer is on the inner side, `broken` where the normal is no number.
-#[multiversion(targets("x86_64+avx2"))]
-pub fn normal_lanes(
-    from: NormalColumns<'_>,
-    x: &mut [f32],
-    y: &mut [f32],
-    z: &mut [f32],
-    inside: &mut [f32],
-    broken: &mut [f32],
-) {
-    let n = x.len();
-    let (y, z, inside, broken) = (&mut y[..n], &mut z[..n], &mut inside[..n], &mut broken[..n]);
-    let (given, wo, ng) = (from.given.narrow(n), from.wo.narrow(n), from.ng.narrow(n));
-    let mut odd = 0;
-    for i in 0..n {
-        odd |= !near_unit(given.at(i).dot(given.at(i))) as u32;
-    }
-    let mut averted = 0;
-    // Both loops give a lane the same bits.
-    if odd == 0 {
+lanes! {
+    /// Unit normals to shade with; `inside` is 1 where the viewer is on the inner side, `broken` where the normal is no number.
+    pub fn normal_lanes(
+        from: NormalColumns<'_>,
+        x: &mut [f32],
+        y: &mut [f32],
+        z: &mut [f32],
+        inside: &mut [f32],
+        broken: &mut [f32],
+    ) {
+        let n = x.len();
+        let (y, z, inside, broken) = (&mut y[..n], &mut z[..n], &mut inside[..n], &mut broken[..n]);
+        let (given, wo, ng) = (from.given.narrow(n), from.wo.narrow(n), from.ng.narrow(n));
+        let mut odd = 0;
         for i in 0..n {
-            let g = given.at(i);
-            let unit = g * (1.0 / g.dot(g).sqrt());
-            let (unit, behind) = faced(unit, wo.at(i), ng.at(i));
-            averted |= (unit.dot(wo.at(i)) < LEAST) as u32;
-            (x[i], y[i], z[i]) = (unit.x, unit.y, unit.z);
-            (inside[i], broken[i]) = (select(behind, 1.0, 0.0), 0.0);
+            odd |= !near_unit(given.at(i).dot(given.at(i))) as u32;
         }
-    } else {
+        let mut averted = 0;
+        // Both loops give a lane the same bits.
+        if odd == 0 {
+            for i in 0..n {
+                let g = given.at(i);
+                let unit = g * (1.0 / g.dot(g).sqrt());
+                let (unit, behind) = faced(unit, wo.at(i), ng.at(i));
+                averted |= (unit.dot(wo.at(i)) < LEAST) as u32;
+                (x[i], y[i], z[i]) = (unit.x, unit.y, unit.z);
+                (inside[i], broken[i]) = (select(behind, 1.0, 0.0), 0.0);
+            }
+        } else {
+            for i in 0..n {
+                let (o, geometric) = (wo.at(i), ng.at(i));
+                let fallback = choose(geometric.dot(geometric) > 0.5, geometric, o);
+                let (unit, finite) = unit_of(given.at(i), fallback);
+                let (unit, behind) = faced(unit, o, geometric);
+                averted |= (unit.dot(o) < LEAST) as u32;
+                (x[i], y[i], z[i]) = (unit.x, unit.y, unit.z);
+                (inside[i], broken[i]) = (select(behind, 1.0, 0.0), select(finite, 0.0, 1.0));
+            }
+        }
+        if averted == 0 {
+            return;
+        }
         for i in 0..n {
-            let (o, geometric) = (wo.at(i), ng.at(i));
-            let fallback = choose(geometric.dot(geometric) > 0.5, geometric, o);
-            let (unit, finite) = unit_of(given.at(i), fallback);
-            let (unit, behind) = faced(unit, o, geometric);
-            averted |= (unit.dot(o) < LEAST) as u32;
-            (x[i], y[i], z[i]) = (unit.x, unit.y, unit.z);
-            (inside[i], broken[i]) = (select(behind, 1.0, 0.0), select(finite, 0.0, 1.0));
+            let normal = bent(Vec3::new(x[i], y[i], z[i]), wo.at(i));
+            (x[i], y[i], z[i]) = (normal.x, normal.y, normal.z);
         }
-    }
-    if averted == 0 {
-        return;
-    }
-    for i in 0..n {
-        let normal = bent(Vec3::new(x[i], y[i], z[i]), wo.at(i));
-        (x[i], y[i], z[i]) = (normal.x, normal.y, normal.z);
     }
 }
 
@@ -113,23 +114,24 @@ fn choose(condition: bool, yes: Vec3, no: Vec3) -> Vec3 {
     Vec3::new(select(condition, yes.x, no.x), select(condition, yes.y, no.y), select(condition, yes.z, no.z))
 }
 
-/// Tangents and bitangents of normals, of any azimuth.
-#[multiversion(targets("x86_64+avx2"))]
-pub fn tangent_lanes(
-    normal: Triples<'_>,
-    tx: &mut [f32],
-    ty: &mut [f32],
-    tz: &mut [f32],
-    bx: &mut [f32],
-    by: &mut [f32],
-    bz: &mut [f32],
-) {
-    let n = tx.len();
-    let (ty, tz, bx, by, bz) = (&mut ty[..n], &mut tz[..n], &mut bx[..n], &mut by[..n], &mut bz[..n]);
-    let normal = normal.narrow(n);
-    for i in 0..n {
-        let frame = Frame::from_normal(normal.at(i));
-        (tx[i], ty[i], tz[i]) = (frame.tangent.x, frame.tangent.y, frame.tangent.z);
-        (bx[i], by[i], bz[i]) = (frame.bitangent.x, frame.bitangent.y, frame.bitangent.z);
+lanes! {
+    /// Tangents and bitangents of normals, of any azimuth.
+    pub fn tangent_lanes(
+        normal: Triples<'_>,
+        tx: &mut [f32],
+        ty: &mut [f32],
+        tz: &mut [f32],
+        bx: &mut [f32],
+        by: &mut [f32],
+        bz: &mut [f32],
+    ) {
+        let n = tx.len();
+        let (ty, tz, bx, by, bz) = (&mut ty[..n], &mut tz[..n], &mut bx[..n], &mut by[..n], &mut bz[..n]);
+        let normal = normal.narrow(n);
+        for i in 0..n {
+            let frame = Frame::from_normal(normal.at(i));
+            (tx[i], ty[i], tz[i]) = (frame.tangent.x, frame.tangent.y, frame.tangent.z);
+            (bx[i], by[i], bz[i]) = (frame.bitangent.x, frame.bitangent.y, frame.bitangent.z);
+        }
     }
 }

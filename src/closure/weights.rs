@@ -6,7 +6,7 @@
 
 use super::store::Store;
 use super::tree::{Floats, Tree};
-use multiversion::multiversion;
+use crate::lanes;
 
 /// A weight.
 #[derive(Clone, Copy, Debug)]
@@ -137,60 +137,66 @@ fn combine(a: Operand, b: Operand, out: &mut [f32], f: impl Fn(f32, f32) -> f32)
     }
 }
 
-/// `out = a b`
-#[multiversion(targets("x86_64+avx2"))]
-pub fn multiply(a: Operand<'_>, b: Operand<'_>, out: &mut [f32]) {
-    combine(a, b, out, |a, b| a * b);
-}
-
-/// `out = a + b`
-#[multiversion(targets("x86_64+avx2"))]
-fn add(a: Operand<'_>, b: Operand<'_>, out: &mut [f32]) {
-    combine(a, b, out, |a, b| a + b);
-}
-
-/// Is every one a finite number, and is any not zero?
-#[multiversion(targets("x86_64+avx2"))]
-pub fn finite_and_some(values: &[f32]) -> bool {
-    const EXPONENT: u32 = 0x7f80_0000;
-    let (mut some, mut broken) = (0, 0);
-    for value in values {
-        let magnitude = value.to_bits() & 0x7fff_ffff;
-        some |= magnitude;
-        broken |= (magnitude >= EXPONENT) as u32;
-    }
-    some != 0 && broken == 0
-}
-
-/// Is every one a finite number?
-#[multiversion(targets("x86_64+avx2"))]
-pub fn all_finite(values: &[f32]) -> bool {
-    values.iter().fold(0, |broken, value| broken | (value.to_bits() & 0x7fff_ffff >= 0x7f80_0000) as u32) == 0
-}
-
-/// Turns the albedo of a lobe into its share, and adds that to the total of all lobes: luminance of the weight's magnitude,
-/// albedo, and what the layers let through.
-#[multiversion(targets("x86_64+avx2"))]
-pub fn share_lanes(weight: [&[f32]; 3], through: &[f32], share: &mut [f32], total: &mut [f32]) {
-    let n = share.len();
-    let (x, y, z) = (&weight[0][..n], &weight[1][..n], &weight[2][..n]);
-    let (through, total) = (&through[..n], &mut total[..n]);
-    for i in 0..n {
-        let luminance = 0.2126 * x[i].abs() + 0.7152 * y[i].abs() + 0.0722 * z[i].abs();
-        // An albedo is an estimate: a lobe that may scatter is never excluded for it.
-        share[i] = (luminance * share[i].max(1e-3) * through[i]).min(1e30);
-        total[i] += share[i];
+lanes! {
+    /// `out = a b`
+    pub fn multiply(a: Operand<'_>, b: Operand<'_>, out: &mut [f32]) {
+        combine(a, b, out, |a, b| a * b);
     }
 }
 
-/// Shares of all lobes to probabilities; `last` is the last lobe that has any.
-#[multiversion(targets("x86_64+avx2"))]
-pub fn normalise_lanes(lobe: u32, inverse: &[f32], share: &mut [f32], last: &mut [u32]) {
-    let n = share.len();
-    let (inverse, last) = (&inverse[..n], &mut last[..n]);
-    for i in 0..n {
-        share[i] *= inverse[i];
-        last[i] = if share[i] > 0.0 { lobe } else { last[i] };
+lanes! {
+    /// `out = a + b`
+    fn add(a: Operand<'_>, b: Operand<'_>, out: &mut [f32]) {
+        combine(a, b, out, |a, b| a + b);
+    }
+}
+
+lanes! {
+    /// Is every one a finite number, and is any not zero?
+    pub fn finite_and_some(values: &[f32]) -> bool {
+        const EXPONENT: u32 = 0x7f80_0000;
+        let (mut some, mut broken) = (0, 0);
+        for value in values {
+            let magnitude = value.to_bits() & 0x7fff_ffff;
+            some |= magnitude;
+            broken |= (magnitude >= EXPONENT) as u32;
+        }
+        some != 0 && broken == 0
+    }
+}
+
+lanes! {
+    /// Is every one a finite number?
+    pub fn all_finite(values: &[f32]) -> bool {
+        values.iter().fold(0, |broken, value| broken | (value.to_bits() & 0x7fff_ffff >= 0x7f80_0000) as u32) == 0
+    }
+}
+
+lanes! {
+    /// Turns the albedo of a lobe into its share, and adds that to the total of all lobes: luminance of the weight's magnitude,
+    /// albedo, and what the layers let through.
+    pub fn share_lanes(weight: [&[f32]; 3], through: &[f32], share: &mut [f32], total: &mut [f32]) {
+        let n = share.len();
+        let (x, y, z) = (&weight[0][..n], &weight[1][..n], &weight[2][..n]);
+        let (through, total) = (&through[..n], &mut total[..n]);
+        for i in 0..n {
+            let luminance = 0.2126 * x[i].abs() + 0.7152 * y[i].abs() + 0.0722 * z[i].abs();
+            // An albedo is an estimate: a lobe that may scatter is never excluded for it.
+            share[i] = (luminance * share[i].max(1e-3) * through[i]).min(1e30);
+            total[i] += share[i];
+        }
+    }
+}
+
+lanes! {
+    /// Shares of all lobes to probabilities; `last` is the last lobe that has any.
+    pub fn normalise_lanes(lobe: u32, inverse: &[f32], share: &mut [f32], last: &mut [u32]) {
+        let n = share.len();
+        let (inverse, last) = (&inverse[..n], &mut last[..n]);
+        for i in 0..n {
+            share[i] *= inverse[i];
+            last[i] = if share[i] > 0.0 { lobe } else { last[i] };
+        }
     }
 }
 

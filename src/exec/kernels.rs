@@ -6,7 +6,7 @@
 
 use crate::ir::fold;
 use crate::ir::op::*;
-use multiversion::multiversion;
+use crate::lanes;
 
 /// Runs `f` over a column.
 #[inline(always)]
@@ -99,28 +99,31 @@ macro_rules! per_pair {
     };
 }
 
-/// `dst = op a`
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn unary(op: Unary, dst: &mut [f32], a: &[f32]) {
-    per_variant!(op, Unary [Neg Abs Sqrt InverseSqrt Cbrt Exp Exp2 Expm1 Log Log2 Log10 Logb Sin Cos Tan Asin Acos Atan
-        Sinh Cosh Tanh Erf Erfc Floor Ceil Round Trunc Sign], |OP| map1(dst, a, |a| fold::unary(OP, a)));
-}
-
-/// `dst = a op b`
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn binary(op: Binary, dst: &mut [f32], a: &[f32], b: &[f32]) {
-    per_variant!(op, Binary [Add Sub Mul Div Mod Pow Atan2 Min Max Step], |OP| map2(dst, a, b, |a, b| fold::binary(OP, a, b)));
-}
-
-/// `dst = (a first b) second c`
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn fused(op: Pair, dst: &mut [f32], a: &[f32], b: &[f32], c: &[f32]) {
-    if a.len() == 1 && b.len() == 1 {
-        return apart(op, &mut [0.0], dst, [a, b, c]);
+lanes! {
+    /// `dst = op a`
+    pub fn unary(op: Unary, dst: &mut [f32], a: &[f32]) {
+        per_variant!(op, Unary [Neg Abs Sqrt InverseSqrt Cbrt Exp Exp2 Expm1 Log Log2 Log10 Logb Sin Cos Tan Asin Acos Atan
+            Sinh Cosh Tanh Erf Erfc Floor Ceil Round Trunc Sign], |OP| map1(dst, a, |a| fold::unary(OP, a)));
     }
-    per_pair!(op, [Add Sub Mul Div]
-        [Add false Sub false Sub true Mul false Div false Div true Min false Min true Max false Max true],
-        |OP| map3(dst, a, b, c, |a, b, c| fold::pair(OP, a, b, c)), apart(op, &mut vec![0.0; dst.len()], dst, [a, b, c]));
+}
+
+lanes! {
+    /// `dst = a op b`
+    pub fn binary(op: Binary, dst: &mut [f32], a: &[f32], b: &[f32]) {
+        per_variant!(op, Binary [Add Sub Mul Div Mod Pow Atan2 Min Max Step], |OP| map2(dst, a, b, |a, b| fold::binary(OP, a, b)));
+    }
+}
+
+lanes! {
+    /// `dst = (a first b) second c`
+    pub fn fused(op: Pair, dst: &mut [f32], a: &[f32], b: &[f32], c: &[f32]) {
+        if a.len() == 1 && b.len() == 1 {
+            return apart(op, &mut [0.0], dst, [a, b, c]);
+        }
+        per_pair!(op, [Add Sub Mul Div]
+            [Add false Sub false Sub true Mul false Div false Div true Min false Min true Max false Max true],
+            |OP| map3(dst, a, b, c, |a, b, c| fold::pair(OP, a, b, c)), apart(op, &mut vec![0.0; dst.len()], dst, [a, b, c]));
+    }
 }
 
 /// The same as two instructions with `t` in between. Programs have no other pairs than those of [`Pair::has_loop`].
@@ -129,41 +132,47 @@ fn apart(op: Pair, t: &mut [f32], dst: &mut [f32], [a, b, c]: [&[f32]; 3]) {
     if op.swapped { binary(op.second, dst, c, t) } else { binary(op.second, dst, t, c) }
 }
 
-/// `dst = a op b`, an int
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn compare(op: Compare, dst: &mut [i32], a: &[f32], b: &[f32]) {
-    per_variant!(op, Compare [Lt Le Gt Ge Eq Ne], |OP| map2(dst, a, b, |a, b| fold::compare(OP, a, b)));
+lanes! {
+    /// `dst = a op b`, an int
+    pub fn compare(op: Compare, dst: &mut [i32], a: &[f32], b: &[f32]) {
+        per_variant!(op, Compare [Lt Le Gt Ge Eq Ne], |OP| map2(dst, a, b, |a, b| fold::compare(OP, a, b)));
+    }
 }
 
-/// `dst = is a …`
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn test(test: Test, dst: &mut [i32], a: &[f32]) {
-    per_variant!(test, Test [Nan Inf Finite], |OP| map1(dst, a, |a| fold::test(OP, a)));
+lanes! {
+    /// `dst = is a …`
+    pub fn test(test: Test, dst: &mut [i32], a: &[f32]) {
+        per_variant!(test, Test [Nan Inf Finite], |OP| map1(dst, a, |a| fold::test(OP, a)));
+    }
 }
 
-/// `dst = op a`, ints
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn int_unary(op: IntUnary, dst: &mut [i32], a: &[i32]) {
-    per_variant!(op, IntUnary [Neg Abs BitNot Not], |OP| map1(dst, a, |a| fold::int_unary(OP, a)));
+lanes! {
+    /// `dst = op a`, ints
+    pub fn int_unary(op: IntUnary, dst: &mut [i32], a: &[i32]) {
+        per_variant!(op, IntUnary [Neg Abs BitNot Not], |OP| map1(dst, a, |a| fold::int_unary(OP, a)));
+    }
 }
 
-/// `dst = a op b`, ints
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn int_binary(op: IntBinary, dst: &mut [i32], a: &[i32], b: &[i32]) {
-    per_variant!(op, IntBinary [Add Sub Mul Div Mod Shl Shr BitAnd BitOr BitXor Min Max Lt Le Gt Ge Eq Ne And Or],
-        |OP| map2(dst, a, b, |a, b| fold::int_binary(OP, a, b)));
+lanes! {
+    /// `dst = a op b`, ints
+    pub fn int_binary(op: IntBinary, dst: &mut [i32], a: &[i32], b: &[i32]) {
+        per_variant!(op, IntBinary [Add Sub Mul Div Mod Shl Shr BitAnd BitOr BitXor Min Max Lt Le Gt Ge Eq Ne And Or],
+            |OP| map2(dst, a, b, |a, b| fold::int_binary(OP, a, b)));
+    }
 }
 
-/// `dst = (float) a`
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn int_to_float(dst: &mut [f32], a: &[i32]) {
-    map1(dst, a, |a| a as f32);
+lanes! {
+    /// `dst = (float) a`
+    pub fn int_to_float(dst: &mut [f32], a: &[i32]) {
+        map1(dst, a, |a| a as f32);
+    }
 }
 
-/// `dst = (int) a`
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn float_to_int(dst: &mut [i32], a: &[f32]) {
-    map1(dst, a, fold::float_to_int);
+lanes! {
+    /// `dst = (int) a`
+    pub fn float_to_int(dst: &mut [i32], a: &[f32]) {
+        map1(dst, a, fold::float_to_int);
+    }
 }
 
 /// `dst = c != 0 ? a : b`
@@ -198,16 +207,18 @@ fn choose<T: Copy>(dst: &mut [T], c: &[i32], a: &[T], b: &[T]) {
     }
 }
 
-/// `dst = c != 0 ? a : b`, floats
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn select(dst: &mut [f32], c: &[i32], a: &[f32], b: &[f32]) {
-    choose(dst, c, a, b);
+lanes! {
+    /// `dst = c != 0 ? a : b`, floats
+    pub fn select(dst: &mut [f32], c: &[i32], a: &[f32], b: &[f32]) {
+        choose(dst, c, a, b);
+    }
 }
 
-/// `dst = c != 0 ? a : b`, ints
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn select_int(dst: &mut [i32], c: &[i32], a: &[i32], b: &[i32]) {
-    choose(dst, c, a, b);
+lanes! {
+    /// `dst = c != 0 ? a : b`, ints
+    pub fn select_int(dst: &mut [i32], c: &[i32], a: &[i32], b: &[i32]) {
+        choose(dst, c, a, b);
+    }
 }
 
 /// `dst = a` where the mask is set
@@ -220,27 +231,30 @@ fn blend<T: Copy>(dst: &mut [T], mask: &[i32], a: &[T]) {
     }
 }
 
-/// `dst = a` where the mask is set, floats
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn masked_move(dst: &mut [f32], mask: &[i32], a: &[f32]) {
-    blend(dst, mask, a);
-}
-
-/// `dst = a` where the mask is set, ints
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn masked_move_int(dst: &mut [i32], mask: &[i32], a: &[i32]) {
-    blend(dst, mask, a);
-}
-
-/// `out = mask and (c != 0) == wanted`; gives the number of lanes set.
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-pub fn narrow(out: &mut [i32], mask: &[i32], c: &[i32], wanted: bool) -> usize {
-    let mut count = 0;
-    for ((o, &m), &c) in out.iter_mut().zip(mask).zip(c) {
-        *o = (m != 0 && (c != 0) == wanted) as i32;
-        count += *o;
+lanes! {
+    /// `dst = a` where the mask is set, floats
+    pub fn masked_move(dst: &mut [f32], mask: &[i32], a: &[f32]) {
+        blend(dst, mask, a);
     }
-    count as usize
+}
+
+lanes! {
+    /// `dst = a` where the mask is set, ints
+    pub fn masked_move_int(dst: &mut [i32], mask: &[i32], a: &[i32]) {
+        blend(dst, mask, a);
+    }
+}
+
+lanes! {
+    /// `out = mask and (c != 0) == wanted`; gives the number of lanes set.
+    pub fn narrow(out: &mut [i32], mask: &[i32], c: &[i32], wanted: bool) -> usize {
+        let mut count = 0;
+        for ((o, &m), &c) in out.iter_mut().zip(mask).zip(c) {
+            *o = (m != 0 && (c != 0) == wanted) as i32;
+            count += *o;
+        }
+        count as usize
+    }
 }
 
 #[cfg(test)]

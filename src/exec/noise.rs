@@ -3,12 +3,12 @@
 use super::machine::Run;
 use crate::ir::op::{Noise, NoiseKind};
 use crate::ir::program::Reg;
+use crate::lanes;
 use crate::math::columns::copy_block;
 use crate::math::noise::cell::*;
 use crate::math::noise::perlin::*;
 use crate::math::noise::simplex::*;
 use crate::math::noise::{Endless, Jet, Periodic, unsigned};
-use multiversion::multiversion;
 
 /// How many lanes are computed at a time: a few vectors of the widest kind.
 const BLOCK: usize = 16;
@@ -73,40 +73,43 @@ macro_rules! by_dims {
     };
 }
 
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn perlin(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
-    by_dims!(noise, out, columns, bias, |x, l|
-        1 => perlin1(Endless, x[0][l]), perlin1_vector(Endless, x[0][l]);
-        2 => perlin2(Endless, x[0][l], x[1][l]), perlin2_vector(Endless, x[0][l], x[1][l]);
-        3 => perlin3(Endless, x[0][l], x[1][l], x[2][l]),
-             perlin3_vector(Endless, x[0][l], x[1][l], x[2][l]);
-        4 => perlin4(Endless, x[0][l], x[1][l], x[2][l], x[3][l]),
-             perlin4_vector(Endless, x[0][l], x[1][l], x[2][l], x[3][l]));
+lanes! {
+    fn perlin(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
+        by_dims!(noise, out, columns, bias, |x, l|
+            1 => perlin1(Endless, x[0][l]), perlin1_vector(Endless, x[0][l]);
+            2 => perlin2(Endless, x[0][l], x[1][l]), perlin2_vector(Endless, x[0][l], x[1][l]);
+            3 => perlin3(Endless, x[0][l], x[1][l], x[2][l]),
+                 perlin3_vector(Endless, x[0][l], x[1][l], x[2][l]);
+            4 => perlin4(Endless, x[0][l], x[1][l], x[2][l], x[3][l]),
+                 perlin4_vector(Endless, x[0][l], x[1][l], x[2][l], x[3][l]));
+    }
 }
 
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn perlin_periodic(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
-    let p1 = |x: &Block, l: usize| Periodic::new([x[1][l]]);
-    let p2 = |x: &Block, l: usize| Periodic::new([x[2][l], x[3][l]]);
-    let p3 = |x: &Block, l: usize| Periodic::new([x[3][l], x[4][l], x[5][l]]);
-    let p4 = |x: &Block, l: usize| Periodic::new([x[4][l], x[5][l], x[6][l], x[7][l]]);
-    by_dims!(noise, out, columns, bias, |x, l|
-        1 => perlin1(p1(x, l), x[0][l]), perlin1_vector(p1(x, l), x[0][l]);
-        2 => perlin2(p2(x, l), x[0][l], x[1][l]), perlin2_vector(p2(x, l), x[0][l], x[1][l]);
-        3 => perlin3(p3(x, l), x[0][l], x[1][l], x[2][l]),
-             perlin3_vector(p3(x, l), x[0][l], x[1][l], x[2][l]);
-        4 => perlin4(p4(x, l), x[0][l], x[1][l], x[2][l], x[3][l]),
-             perlin4_vector(p4(x, l), x[0][l], x[1][l], x[2][l], x[3][l]));
+lanes! {
+    fn perlin_periodic(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
+        let p1 = |x: &Block, l: usize| Periodic::new([x[1][l]]);
+        let p2 = |x: &Block, l: usize| Periodic::new([x[2][l], x[3][l]]);
+        let p3 = |x: &Block, l: usize| Periodic::new([x[3][l], x[4][l], x[5][l]]);
+        let p4 = |x: &Block, l: usize| Periodic::new([x[4][l], x[5][l], x[6][l], x[7][l]]);
+        by_dims!(noise, out, columns, bias, |x, l|
+            1 => perlin1(p1(x, l), x[0][l]), perlin1_vector(p1(x, l), x[0][l]);
+            2 => perlin2(p2(x, l), x[0][l], x[1][l]), perlin2_vector(p2(x, l), x[0][l], x[1][l]);
+            3 => perlin3(p3(x, l), x[0][l], x[1][l], x[2][l]),
+                 perlin3_vector(p3(x, l), x[0][l], x[1][l], x[2][l]);
+            4 => perlin4(p4(x, l), x[0][l], x[1][l], x[2][l], x[3][l]),
+                 perlin4_vector(p4(x, l), x[0][l], x[1][l], x[2][l], x[3][l]));
+    }
 }
 
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn simplex(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
-    by_dims!(noise, out, columns, bias, |x, l|
-        1 => simplex1(0, x[0][l]), simplex1_vector(x[0][l]);
-        2 => simplex2(0, x[0][l], x[1][l]), simplex2_vector(x[0][l], x[1][l]);
-        3 => simplex3(0, x[0][l], x[1][l], x[2][l]), simplex3_vector(x[0][l], x[1][l], x[2][l]);
-        4 => simplex4(0, x[0][l], x[1][l], x[2][l], x[3][l]),
-             simplex4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
+lanes! {
+    fn simplex(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]], bias: bool) {
+        by_dims!(noise, out, columns, bias, |x, l|
+            1 => simplex1(0, x[0][l]), simplex1_vector(x[0][l]);
+            2 => simplex2(0, x[0][l], x[1][l]), simplex2_vector(x[0][l], x[1][l]);
+            3 => simplex3(0, x[0][l], x[1][l], x[2][l]), simplex3_vector(x[0][l], x[1][l], x[2][l]);
+            4 => simplex4(0, x[0][l], x[1][l], x[2][l], x[3][l]),
+                 simplex4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
+    }
 }
 
 /// A jet without gradient.
@@ -126,24 +129,26 @@ macro_rules! flat_by_dims {
     };
 }
 
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn cell(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]]) {
-    flat_by_dims!(noise, out, columns, |x, l|
-        1 => cell1(x[0][l]), cell1_vector(x[0][l]);
-        2 => cell2(x[0][l], x[1][l]), cell2_vector(x[0][l], x[1][l]);
-        3 => cell3(x[0][l], x[1][l], x[2][l]), cell3_vector(x[0][l], x[1][l], x[2][l]);
-        4 => cell4(x[0][l], x[1][l], x[2][l], x[3][l]),
-             cell4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
+lanes! {
+    fn cell(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]]) {
+        flat_by_dims!(noise, out, columns, |x, l|
+            1 => cell1(x[0][l]), cell1_vector(x[0][l]);
+            2 => cell2(x[0][l], x[1][l]), cell2_vector(x[0][l], x[1][l]);
+            3 => cell3(x[0][l], x[1][l], x[2][l]), cell3_vector(x[0][l], x[1][l], x[2][l]);
+            4 => cell4(x[0][l], x[1][l], x[2][l], x[3][l]),
+                 cell4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
+    }
 }
 
-#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt"))]
-fn hash(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]]) {
-    flat_by_dims!(noise, out, columns, |x, l|
-        1 => hash1_noise(x[0][l]), hash1_vector(x[0][l]);
-        2 => hash2_noise(x[0][l], x[1][l]), hash2_vector(x[0][l], x[1][l]);
-        3 => hash3_noise(x[0][l], x[1][l], x[2][l]), hash3_vector(x[0][l], x[1][l], x[2][l]);
-        4 => hash4_noise(x[0][l], x[1][l], x[2][l], x[3][l]),
-             hash4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
+lanes! {
+    fn hash(noise: Noise, out: &mut [Vec<f32>], columns: &[&[f32]]) {
+        flat_by_dims!(noise, out, columns, |x, l|
+            1 => hash1_noise(x[0][l]), hash1_vector(x[0][l]);
+            2 => hash2_noise(x[0][l], x[1][l]), hash2_vector(x[0][l], x[1][l]);
+            3 => hash3_noise(x[0][l], x[1][l], x[2][l]), hash3_vector(x[0][l], x[1][l], x[2][l]);
+            4 => hash4_noise(x[0][l], x[1][l], x[2][l], x[3][l]),
+                 hash4_vector(x[0][l], x[1][l], x[2][l], x[3][l]));
+    }
 }
 
 impl Run<'_> {

@@ -3,6 +3,7 @@
 pub mod columns;
 pub mod elementary;
 pub mod frame;
+pub mod instruction_set;
 pub mod noise;
 pub mod quadrature;
 pub mod warp;

@@ -8,9 +8,9 @@ use super::shadow::ShadowRay;
 use super::surface::fill;
 use super::wave::{Path, Wave, emission_weight, gather};
 use super::world::{Sky, World};
+use crate::lanes;
 use crate::math::columns::Column3;
 use glam::Vec3;
-use multiversion::multiversion;
 
 /// A cone that bounces off a diffuse surface grows as fast as this, off a glossy one as the other: guesses on the
 /// wide side, for they only choose how much a texture is blurred.
@@ -230,19 +230,20 @@ impl Wave {
     }
 }
 
-/// What a unit of a light's radiance adds to each lane's path: throughput times f |cos| / density, times the weight
-/// against scattering when the two are combined.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-fn weigh(own: &[f32], other: &[f32], f_cos: &Column3, throughput: &Column3, combined: bool, out: [&mut [f32]; 3]) {
-    let n = own.len();
-    let other = &other[..n];
-    let columns = [(&f_cos.x, &throughput.x), (&f_cos.y, &throughput.y), (&f_cos.z, &throughput.z)];
-    for (out, (f_cos, throughput)) in out.into_iter().zip(columns) {
-        let (out, f_cos, throughput) = (&mut out[..n], &f_cos[..n], &throughput[..n]);
-        for i in 0..n {
-            let heuristic = if combined { power_heuristic(own[i], other[i]) } else { 1.0 };
-            let scale = if own[i] > 0.0 { heuristic / own[i] } else { 0.0 };
-            out[i] = throughput[i] * f_cos[i] * scale;
+lanes! {
+    /// What a unit of a light's radiance adds to each lane's path: throughput times f |cos| / density, times the weight
+    /// against scattering when the two are combined.
+    fn weigh(own: &[f32], other: &[f32], f_cos: &Column3, throughput: &Column3, combined: bool, out: [&mut [f32]; 3]) {
+        let n = own.len();
+        let other = &other[..n];
+        let columns = [(&f_cos.x, &throughput.x), (&f_cos.y, &throughput.y), (&f_cos.z, &throughput.z)];
+        for (out, (f_cos, throughput)) in out.into_iter().zip(columns) {
+            let (out, f_cos, throughput) = (&mut out[..n], &f_cos[..n], &throughput[..n]);
+            for i in 0..n {
+                let heuristic = if combined { power_heuristic(own[i], other[i]) } else { 1.0 };
+                let scale = if own[i] > 0.0 { heuristic / own[i] } else { 0.0 };
+                out[i] = throughput[i] * f_cos[i] * scale;
+            }
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Camera rays: a pinhole, as testrender's, with the footprint of a pixel.
 
+use crate::lanes;
 use crate::math::columns::Column3;
 use crate::scene::Camera;
 use glam::Vec3;
-use multiversion::multiversion;
 
 /// A camera set up for an image size.
 #[derive(Clone, Copy, Debug)]
@@ -59,14 +59,16 @@ impl RayCamera {
     }
 }
 
-/// Directions through the points (`x` + `places`, `y` + `places`) of the image.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-pub fn directions(camera: &RayCamera, x: f32, y: f32, [places_x, places_y]: [&[f32]; 2], out: &mut Column3) {
-    let n = out.x.len();
-    let (places_x, places_y) = (&places_x[..n], &places_y[..n]);
-    let (out_x, out_y, out_z) = (&mut out.x[..n], &mut out.y[..n], &mut out.z[..n]);
-    for i in 0..n {
-        let direction = camera.direction(x + places_x[i], y + places_y[i]);
-        (out_x[i], out_y[i], out_z[i]) = (direction.x, direction.y, direction.z);
+lanes! {
+    /// Directions through the points (`x` + `places`, `y` + `places`) of the image.
+    pub fn directions(camera: &RayCamera, x: f32, y: f32, places: [&[f32]; 2], out: &mut Column3) {
+        let [places_x, places_y] = places;
+        let n = out.x.len();
+        let (places_x, places_y) = (&places_x[..n], &places_y[..n]);
+        let (out_x, out_y, out_z) = (&mut out.x[..n], &mut out.y[..n], &mut out.z[..n]);
+        for i in 0..n {
+            let direction = camera.direction(x + places_x[i], y + places_y[i]);
+            (out_x[i], out_y[i], out_z[i]) = (direction.x, direction.y, direction.z);
+        }
     }
 }

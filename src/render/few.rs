@@ -8,9 +8,9 @@ use super::accel::{Hit, NOTHING, Ray};
 use super::block::{Row, WIDTH};
 use super::shadow::ShadowRay;
 use super::wave::Path;
+use crate::lanes;
 use crate::scene::{Geometry, Shape};
 use glam::Vec3;
-use multiversion::multiversion;
 
 /// All primitives of a small scene.
 #[derive(Clone, Debug)]
@@ -161,60 +161,64 @@ impl Block {
     }
 }
 
-/// Stores the closest hit of each active path.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-pub fn intersect(few: &Few, paths: &mut [Path], active: &[u32]) {
-    let mut block = Block::empty();
-    for part in active.chunks(WIDTH) {
-        for (k, &i) in part.iter().enumerate() {
-            let path = &paths[i as usize];
-            block.load(k, path.hit.origin, path.hit.direction, f32::INFINITY, path.from);
-        }
-        block.meet_all(few);
-        for (k, &i) in part.iter().enumerate() {
-            let hit = &mut paths[i as usize].hit;
-            (hit.t, hit.primitive, hit.u, hit.v) = (block.t[k], block.id[k], block.u[k], block.v[k]);
-        }
-    }
-}
-
-/// Keeps in `clear` the numbers of the rays that nothing stops.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-pub fn unoccluded(few: &Few, rays: &[ShadowRay], clear: &mut Vec<u32>) {
-    let mut block = Block::empty();
-    for (number, part) in rays.chunks(WIDTH).enumerate() {
-        for (k, ray) in part.iter().enumerate() {
-            block.load(k, ray.origin, ray.direction, ray.distance, ray.from);
-            block.target[k] = ray.target;
-        }
-        block.meet_all(few);
-        let free = (0..part.len()).filter(|k| block.id[*k] == NOTHING);
-        clear.extend(free.map(|k| (number * WIDTH + k) as u32));
-    }
-}
-
-/// Gives `hits` the closest hit of each ray.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-pub fn closest(few: &Few, rays: &[Ray], hits: &mut [Hit]) {
-    let mut block = Block::empty();
-    for (rays, hits) in rays.chunks(WIDTH).zip(hits.chunks_mut(WIDTH)) {
-        block.load_rays(rays, true);
-        block.meet_all(few);
-        for (k, hit) in hits.iter_mut().enumerate() {
-            *hit = block.hit(few, k);
+lanes! {
+    /// Stores the closest hit of each active path.
+    pub fn intersect(few: &Few, paths: &mut [Path], active: &[u32]) {
+        let mut block = Block::empty();
+        for part in active.chunks(WIDTH) {
+            for (k, &i) in part.iter().enumerate() {
+                let path = &paths[i as usize];
+                block.load(k, path.hit.origin, path.hit.direction, f32::INFINITY, path.from);
+            }
+            block.meet_all(few);
+            for (k, &i) in part.iter().enumerate() {
+                let hit = &mut paths[i as usize].hit;
+                (hit.t, hit.primitive, hit.u, hit.v) = (block.t[k], block.id[k], block.u[k], block.v[k]);
+            }
         }
     }
 }
 
-/// Gives `blocked` whether anything is in the way of each ray.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-pub fn any(few: &Few, rays: &[Ray], blocked: &mut [bool]) {
-    let mut block = Block::empty();
-    for (rays, blocked) in rays.chunks(WIDTH).zip(blocked.chunks_mut(WIDTH)) {
-        block.load_rays(rays, false);
-        block.meet_all(few);
-        for (k, blocked) in blocked.iter_mut().enumerate() {
-            *blocked = block.id[k] != NOTHING;
+lanes! {
+    /// Keeps in `clear` the numbers of the rays that nothing stops.
+    pub fn unoccluded(few: &Few, rays: &[ShadowRay], clear: &mut Vec<u32>) {
+        let mut block = Block::empty();
+        for (number, part) in rays.chunks(WIDTH).enumerate() {
+            for (k, ray) in part.iter().enumerate() {
+                block.load(k, ray.origin, ray.direction, ray.distance, ray.from);
+                block.target[k] = ray.target;
+            }
+            block.meet_all(few);
+            let free = (0..part.len()).filter(|k| block.id[*k] == NOTHING);
+            clear.extend(free.map(|k| (number * WIDTH + k) as u32));
+        }
+    }
+}
+
+lanes! {
+    /// Gives `hits` the closest hit of each ray.
+    pub fn closest(few: &Few, rays: &[Ray], hits: &mut [Hit]) {
+        let mut block = Block::empty();
+        for (rays, hits) in rays.chunks(WIDTH).zip(hits.chunks_mut(WIDTH)) {
+            block.load_rays(rays, true);
+            block.meet_all(few);
+            for (k, hit) in hits.iter_mut().enumerate() {
+                *hit = block.hit(few, k);
+            }
+        }
+    }
+}
+
+lanes! {
+    /// Gives `blocked` whether anything is in the way of each ray.
+    pub fn any(few: &Few, rays: &[Ray], blocked: &mut [bool]) {
+        let mut block = Block::empty();
+        for (rays, blocked) in rays.chunks(WIDTH).zip(blocked.chunks_mut(WIDTH)) {
+            block.load_rays(rays, false);
+            block.meet_all(few);
+            for (k, blocked) in blocked.iter_mut().enumerate() {
+                *blocked = block.id[k] != NOTHING;
+            }
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use super::block::{Row, Row3, WIDTH, get, load, set, store};
 use super::surface::Form;
+use crate::lanes;
 use crate::math::columns::Column3;
 use crate::scene::{Geometry, Shape};
 use glam::Vec3;
-use multiversion::multiversion;
 use std::f32::consts::PI;
 
 /// Directions toward lights, one a lane.
@@ -261,24 +261,25 @@ impl LightBlock {
     }
 }
 
-/// Samples all lanes as if their lights were flat.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-fn flat_block(block: &mut LightBlock) {
-    for k in 0..WIDTH {
-        let (x, y) = (block.x[k], block.y[k]);
-        let (tx, ty) = square_to_triangle(x, y);
-        let triangle = block.triangle[k] != 0;
-        let (u, v) = (if triangle { tx } else { x }, if triangle { ty } else { y });
-        let to = get(&block.a, k) + u * get(&block.b, k) + v * get(&block.c, k) - get(&block.p, k);
-        let distance = to.length();
-        let direction = to / distance;
-        let pdf = distance * distance / get(&block.area, k).dot(direction).abs();
-        // Neither a point on the light, nor one in its plane, nor a light without extent can be sampled.
-        let good = (block.usable[k] != 0) & (distance > 0.0) & (pdf < f32::INFINITY);
-        block.pdf[k] = if good { pdf * block.chance[k] } else { 0.0 };
-        block.distance[k] = distance;
-        set(&mut block.direction, k, if good { direction } else { Vec3::Y });
-        (block.x[k], block.y[k]) = (u, v);
+lanes! {
+    /// Samples all lanes as if their lights were flat.
+    fn flat_block(block: &mut LightBlock) {
+        for k in 0..WIDTH {
+            let (x, y) = (block.x[k], block.y[k]);
+            let (tx, ty) = square_to_triangle(x, y);
+            let triangle = block.triangle[k] != 0;
+            let (u, v) = (if triangle { tx } else { x }, if triangle { ty } else { y });
+            let to = get(&block.a, k) + u * get(&block.b, k) + v * get(&block.c, k) - get(&block.p, k);
+            let distance = to.length();
+            let direction = to / distance;
+            let pdf = distance * distance / get(&block.area, k).dot(direction).abs();
+            // Neither a point on the light, nor one in its plane, nor a light without extent can be sampled.
+            let good = (block.usable[k] != 0) & (distance > 0.0) & (pdf < f32::INFINITY);
+            block.pdf[k] = if good { pdf * block.chance[k] } else { 0.0 };
+            block.distance[k] = distance;
+            set(&mut block.direction, k, if good { direction } else { Vec3::Y });
+            (block.x[k], block.y[k]) = (u, v);
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 //! other however they branch.
 
 use super::block::{Row, WIDTH};
-use multiversion::multiversion;
+use crate::lanes;
 use sobol_burley::{NUM_DIMENSION_SETS_4D, parts};
 use std::sync::LazyLock;
 
@@ -65,35 +65,36 @@ static VECTORS: LazyLock<Vec<Vectors>> = LazyLock::new(|| {
     (0..NUM_DIMENSION_SETS_4D).map(|set| std::array::from_fn(|bit| vector(set, bit))).collect()
 });
 
-/// Same numbers as `sobol_burley::sample_4d`, which see for the scrambling; lanes in blocks, so that a block's sums stay
-/// in registers.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl+avx512dq"))]
-fn sobol_lanes(seeds: &[u32], indices: &[u32], set: u32, vectors: &Vectors, out: &mut [Vec<f32>]) {
-    for start in (0..seeds.len()).step_by(WIDTH) {
-        let len = WIDTH.min(seeds.len() - start);
-        let (mut seed, mut index) = ([0; WIDTH], [0; WIDTH]);
-        seed[..len].copy_from_slice(&seeds[start..start + len]);
-        index[..len].copy_from_slice(&indices[start..start + len]);
-        for i in 0..WIDTH {
-            let other = mix(seed[i] ^ (index[i] >> 16).wrapping_mul(0x85eb_ca6b));
-            seed[i] = if index[i] >> 16 == 0 { seed[i] } else { other };
-            let shuffle = parts::hash(seed[i] ^ 0x79c6_8e4a);
-            index[i] = parts::owen_scramble_rev((index[i] & 0xffff).reverse_bits(), shuffle);
-        }
-        const KEYS: [u32; 4] = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8];
-        for (k, (column, key)) in out.iter_mut().zip(KEYS).enumerate() {
-            let mut sum = [0; WIDTH];
-            for (bit, vector) in vectors.iter().enumerate() {
-                for i in 0..WIDTH {
-                    sum[i] ^= vector[k] & (((index[i] << bit) as i32 >> 31) as u32);
-                }
-            }
-            let mut block: Row = [0.0; WIDTH];
+lanes! {
+    /// Same numbers as `sobol_burley::sample_4d`, which see for the scrambling; lanes in blocks, so that a block's sums stay
+    /// in registers.
+    fn sobol_lanes(seeds: &[u32], indices: &[u32], set: u32, vectors: &Vectors, out: &mut [Vec<f32>]) {
+        for start in (0..seeds.len()).step_by(WIDTH) {
+            let len = WIDTH.min(seeds.len() - start);
+            let (mut seed, mut index) = ([0; WIDTH], [0; WIDTH]);
+            seed[..len].copy_from_slice(&seeds[start..start + len]);
+            index[..len].copy_from_slice(&indices[start..start + len]);
             for i in 0..WIDTH {
-                let scramble = parts::hash(seed[i].wrapping_mul(0x9c8f_2d3b) ^ set ^ key);
-                block[i] = unit(parts::owen_scramble_rev(sum[i], scramble).reverse_bits());
+                let other = mix(seed[i] ^ (index[i] >> 16).wrapping_mul(0x85eb_ca6b));
+                seed[i] = if index[i] >> 16 == 0 { seed[i] } else { other };
+                let shuffle = parts::hash(seed[i] ^ 0x79c6_8e4a);
+                index[i] = parts::owen_scramble_rev((index[i] & 0xffff).reverse_bits(), shuffle);
             }
-            column[start..start + len].copy_from_slice(&block[..len]);
+            const KEYS: [u32; 4] = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8];
+            for (k, (column, key)) in out.iter_mut().zip(KEYS).enumerate() {
+                let mut sum = [0; WIDTH];
+                for (bit, vector) in vectors.iter().enumerate() {
+                    for i in 0..WIDTH {
+                        sum[i] ^= vector[k] & (((index[i] << bit) as i32 >> 31) as u32);
+                    }
+                }
+                let mut block: Row = [0.0; WIDTH];
+                for i in 0..WIDTH {
+                    let scramble = parts::hash(seed[i].wrapping_mul(0x9c8f_2d3b) ^ set ^ key);
+                    block[i] = unit(parts::owen_scramble_rev(sum[i], scramble).reverse_bits());
+                }
+                column[start..start + len].copy_from_slice(&block[..len]);
+            }
         }
     }
 }

@@ -3,9 +3,9 @@
 use super::block::{Row3, WIDTH, get, set, store};
 use super::plan::Needs;
 use crate::exec::Points;
+use crate::lanes;
 use crate::scene::{Geometry, Primitive, Shape};
 use glam::{Vec2, Vec3};
-use multiversion::multiversion;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// A ray and where it hits.
@@ -116,19 +116,20 @@ impl Hits {
     }
 }
 
-/// Places all rays' hits and turns the normals to the rays.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-fn place_block(hits: &mut Hits) {
-    for i in 0..WIDTH {
-        let [a, b, c] = [0, 1, 2].map(|k| get(&hits.form[k], i));
-        let form = Form { a, b, c, round: hits.round[i] != 0 };
-        let direction = get(&hits.direction, i);
-        let (p, n) = form.place(get(&hits.origin, i), direction, hits.place[0][i], hits.place[1][i], hits.place[2][i]);
-        let behind = n.dot(direction) > 0.0;
-        set(&mut hits.p, i, p);
-        set(&mut hits.outward, i, n);
-        set(&mut hits.facing, i, if behind { -n } else { n });
-        hits.behind[i] = i32::from(behind);
+lanes! {
+    /// Places all rays' hits and turns the normals to the rays.
+    fn place_block(hits: &mut Hits) {
+        for i in 0..WIDTH {
+            let [a, b, c] = [0, 1, 2].map(|k| get(&hits.form[k], i));
+            let form = Form { a, b, c, round: hits.round[i] != 0 };
+            let direction = get(&hits.direction, i);
+            let (p, n) = form.place(get(&hits.origin, i), direction, hits.place[0][i], hits.place[1][i], hits.place[2][i]);
+            let behind = n.dot(direction) > 0.0;
+            set(&mut hits.p, i, p);
+            set(&mut hits.outward, i, n);
+            set(&mut hits.facing, i, if behind { -n } else { n });
+            hits.behind[i] = i32::from(behind);
+        }
     }
 }
 

@@ -1,8 +1,9 @@
 //! Every instruction set gives the same bits: loops compiled for wide SIMD against single calls.
 
 use super::*;
+use crate::lanes;
+use crate::math::instruction_set::InstructionSet;
 use crate::math::noise::{Endless, Periodic, perlin, simplex};
-use multiversion::multiversion;
 
 /// Numbers of all sizes and both signs, and the special ones.
 fn inputs() -> Vec<f32> {
@@ -14,19 +15,24 @@ macro_rules! same_bits {
     ($($name:ident: |$x:ident| $value:expr;)*) => {$(
         #[test]
         fn $name() {
-            #[multiversion(targets("x86_64+avx512f+avx512bw+avx512cd+avx512dq+avx512vl", "x86_64+avx+avx2+fma"))]
-            fn wide(input: &[f32], output: &mut [f32]) {
-                for (o, i) in output.iter_mut().zip(input) {
-                    let $x = *i;
-                    *o = $value;
+            lanes! {
+                fn wide(input: &[f32], output: &mut [f32]) {
+                    for (o, i) in output.iter_mut().zip(input) {
+                        let $x = *i;
+                        *o = $value;
+                    }
                 }
             }
             let input = inputs();
-            let mut output = vec![0.0; input.len()];
-            wide(&input, &mut output);
-            for (got, $x) in output.into_iter().zip(input) {
-                let want: f32 = std::hint::black_box($value);
-                assert!(got.to_bits() == want.to_bits() || (got.is_nan() && want.is_nan()), "{}: {got} but {want}", $x);
+            for set in InstructionSet::ALL {
+                let set = InstructionSet::most(set);
+                let mut output = vec![0.0; input.len()];
+                wide(&input, &mut output);
+                for (got, &$x) in output.into_iter().zip(&input) {
+                    let want: f32 = std::hint::black_box($value);
+                    let same = got.to_bits() == want.to_bits() || (got.is_nan() && want.is_nan());
+                    assert!(same, "{set:?} at {}: {got} but {want}", $x);
+                }
             }
         }
     )*};

@@ -8,10 +8,10 @@ use crate::bsdf::sheen::reference::{self, Model};
 use crate::bsdf::sheen::shadowing::Exact;
 use crate::bsdf::sheen::{EXACT, Sheen};
 use crate::bsdf::{Scatter, params};
+use crate::lanes;
 use crate::math::columns::Column3;
 use crate::math::elementary::pow;
 use glam::Vec3;
-use multiversion::multiversion;
 use std::hint::black_box;
 
 /// f cos of two directions.
@@ -62,13 +62,14 @@ impl Lobe for Doubles {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
-fn lobe_lanes<L: Lobe>(lobe: L, wo: &Column3, wi: &Column3, out: &mut [f64]) {
-    let n = out.len();
-    let (ox, oy, oz) = (&wo.x[..n], &wo.y[..n], &wo.z[..n]);
-    let (ix, iy, iz) = (&wi.x[..n], &wi.y[..n], &wi.z[..n]);
-    for k in 0..n {
-        out[k] = lobe.at(Vec3::new(ox[k], oy[k], oz[k]), Vec3::new(ix[k], iy[k], iz[k]));
+lanes! {
+    fn lobe_lanes<L: Lobe>(lobe: L, wo: &Column3, wi: &Column3, out: &mut [f64]) {
+        let n = out.len();
+        let (ox, oy, oz) = (&wo.x[..n], &wo.y[..n], &wo.z[..n]);
+        let (ix, iy, iz) = (&wi.x[..n], &wi.y[..n], &wi.z[..n]);
+        for k in 0..n {
+            out[k] = lobe.at(Vec3::new(ox[k], oy[k], oz[k]), Vec3::new(ix[k], iy[k], iz[k]));
+        }
     }
 }
 

@@ -16,7 +16,7 @@ use super::prefetch::prefetch;
 use super::shape::Analytic;
 use super::tree::{ANALYTIC, BLOCK, Block, LANES, Node, Tree, WIDTH};
 use super::{Hit, NOTHING, Ray};
-use multiversion::multiversion;
+use crate::lanes;
 
 /// Four roundings and a little: how much later than computed a ray may leave a box.
 const LATE: f32 = 1.0 + 4.0 * f32::EPSILON;
@@ -248,25 +248,27 @@ fn key(entry: f32, child: u32) -> u64 {
     u64::from(entry.to_bits()) << 32 | u64::from(child)
 }
 
-/// Gives `hits` the closest hit of each ray.
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
-pub fn closest(tree: &Tree, rays: &[Ray], hits: &mut [Hit]) {
-    let mut stack = vec![0u64; tree.stack];
-    let parts = Parts::new(tree);
-    for (ray, hit) in rays.iter().zip(hits) {
-        *hit = walk::<false>(&parts, ray, &mut stack);
-        if hit.primitive == NOTHING {
-            hit.t = f32::INFINITY;
+lanes! {
+    /// Gives `hits` the closest hit of each ray.
+    pub fn closest(tree: &Tree, rays: &[Ray], hits: &mut [Hit]) {
+        let mut stack = vec![0u64; tree.stack];
+        let parts = Parts::new(tree);
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = walk::<false>(&parts, ray, &mut stack);
+            if hit.primitive == NOTHING {
+                hit.t = f32::INFINITY;
+            }
         }
     }
 }
 
-/// Gives `blocked` whether anything is in the way of each ray.
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt+popcnt"))]
-pub fn any(tree: &Tree, rays: &[Ray], blocked: &mut [bool]) {
-    let mut stack = vec![0u64; tree.stack];
-    let parts = Parts::new(tree);
-    for (ray, blocked) in rays.iter().zip(blocked) {
-        *blocked = walk::<true>(&parts, ray, &mut stack).primitive != NOTHING;
+lanes! {
+    /// Gives `blocked` whether anything is in the way of each ray.
+    pub fn any(tree: &Tree, rays: &[Ray], blocked: &mut [bool]) {
+        let mut stack = vec![0u64; tree.stack];
+        let parts = Parts::new(tree);
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            *blocked = walk::<true>(&parts, ray, &mut stack).primitive != NOTHING;
+        }
     }
 }
