@@ -135,6 +135,12 @@ fn take(best: &mut Hit, t: f32, primitive: u32, u: f32, v: f32) {
     }
 }
 
+/// True for a ray that can meet something: a NaN would be in every box, also where a node has no child.
+#[inline(always)]
+fn goes_somewhere(ray: &Ray) -> bool {
+    ray.origin.is_finite() && ray.direction.is_finite() && !ray.reach.is_nan()
+}
+
 /// The lists of a tree.
 struct Parts<'a> {
     nodes: &'a [Node],
@@ -254,7 +260,7 @@ lanes! {
         let mut stack = vec![0u64; tree.stack];
         let parts = Parts::new(tree);
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = walk::<false>(&parts, ray, &mut stack);
+            *hit = if goes_somewhere(ray) { walk::<false>(&parts, ray, &mut stack) } else { Hit::NONE };
             if hit.primitive == NOTHING {
                 hit.t = f32::INFINITY;
             }
@@ -268,7 +274,7 @@ lanes! {
         let mut stack = vec![0u64; tree.stack];
         let parts = Parts::new(tree);
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = walk::<true>(&parts, ray, &mut stack).primitive != NOTHING;
+            *blocked = goes_somewhere(ray) && walk::<true>(&parts, ray, &mut stack).primitive != NOTHING;
         }
     }
 }
