@@ -77,7 +77,10 @@ fn every_mistake_has_a_place_and_a_message() {
         (r#"<Camera dir="0,0,0"/>"#, "s:2:1: error: the camera looks nowhere"),
         (r#"<Camera dir="0,1,0"/>"#, "s:2:1: error: the camera's `up` is parallel"),
         (r#"<Camera fov="180"/>"#, "s:2:14: error: `fov` of <Camera> is `180`"),
-        (r#"<Camera fov="0"/>"#, "s:2:14: error: `fov` of <Camera> is `0`: an angle between 0 and 180 degrees expected\n  help"),
+        (
+            r#"<Camera fov="0"/>"#,
+            "s:2:14: error: `fov` of <Camera> is `0`: an angle between 0 and 180 degrees expected\n  help",
+        ),
         (r#"<Camera fov="-40"/>"#, "s:2:14: error: `fov` of <Camera> is `-40`"),
         (r#"<Camera fov="NaN"/>"#, "s:2:14: error: `fov` of <Camera> is `NaN`"),
         (r#"<Camera fov="inf"/>"#, "s:2:14: error: `fov` of <Camera> is `inf`"),
