@@ -36,6 +36,14 @@
 //! Decision (2026-11-22): a wave has 8192 paths, because the batches of late bounces are fuller then: user seconds for 5.2
 //! million samples of figure 1, best of three, 2.02, 1.75, 1.63, 1.57 with 1024, 2048, 4096, 8192.
 //!
+//! Decision (2026-11-29): a stage is a function of the world and the wave, and what it leaves for the next is a field of the
+//! wave, because then stages know no other stage and one screen names them in order; instead of methods that call each
+//! other through the wave, which made a circle of thirteen files.
+//!
+//! Decision (2026-11-29): a [`Renderer`] owns a copy of the scene, which shares geometry and programs, because whoever drives
+//! it swaps materials and cameras between rounds; instead of borrowing the scene, which then could not change. A change
+//! makes the world anew but for the hierarchy, whose making is what takes long.
+//!
 //! An image depends on scene, seed and sample count. It does not depend on thread count, batch width, wave size, rounds or
 //! tile order: a path draws its numbers by pixel, sample and bounce, adds up its own light in order, and a pixel adds up its
 //! samples in order. The size of a tile shows as good as never, see `film`. A render that stops at a noise depends on

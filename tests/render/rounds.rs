@@ -100,7 +100,7 @@ fn a_stopped_round_is_taken_up_again() {
     let scene = scene(ROOM);
     let expected = whole(&scene, &settings(13));
     for threads in [1, 2] {
-        let mut renderer = renderer(&scene, &Settings { threads, ..settings(13) });
+        let mut renderer = renderer(&scene, &Settings { threads, tile_size: 8, ..settings(13) });
         for most in [2, 1, 3] {
             let impatient = Impatient { most, done: AtomicUsize::new(0) };
             assert!(renderer.round_of(5, &impatient).unwrap());
@@ -114,7 +114,7 @@ fn a_stopped_round_is_taken_up_again() {
 #[test]
 fn a_render_that_stops_by_noise_goes_on_as_one_that_does_it_in_one_go() {
     let scene = scene(ROOM);
-    let settings = Settings { noise: Some(0.05), ..settings(128) };
+    let settings = Settings { noise: Some(2e-3), ..settings(96) };
     let expected = whole(&scene, &settings);
     let mut renderer = renderer(&scene, &settings);
     let mut rounds = 1;
