@@ -17,15 +17,18 @@ use std::sync::Arc;
 /// The radiance of each object, where it is one constant; zero for objects that do not emit.
 pub fn constant_emission(scene: &Scene, plan: &Plan, shading: &mut Shading) -> Vec<Option<Vec3>> {
     let first = first_primitives(scene);
-    let of_object = |(object, first): (usize, &u32)| emission_of_object(scene, plan, shading, object, *first);
+    let of_object = |(object, first): (usize, &Option<u32>)| match first {
+        Some(first) => emission_of_object(scene, plan, shading, object, *first),
+        None => Some(Vec3::ZERO),
+    };
     first.iter().enumerate().map(of_object).collect()
 }
 
-/// The first primitive of every object; objects without one keep 0 and are never met.
-fn first_primitives(scene: &Scene) -> Vec<u32> {
-    let mut first = vec![0; scene.geometry.objects.len()];
+/// The first primitive of every object; an object without any is never met.
+fn first_primitives(scene: &Scene) -> Vec<Option<u32>> {
+    let mut first = vec![None; scene.geometry.objects.len()];
     for (id, primitive) in scene.geometry.primitives.iter().enumerate().rev() {
-        first[primitive.object as usize] = id as u32;
+        first[primitive.object as usize] = Some(id as u32);
     }
     first
 }

@@ -23,8 +23,33 @@ use std::time::Instant;
 /// A scene that is being rendered.
 ///
 /// [`round`](Renderer::round) adds samples, [`picture`](Renderer::picture) gives what there is so far. After all rounds the
-/// picture is the one that [`render`](fn@super::render) gives, to the last bit, whatever the rounds were. A change starts the
-/// picture anew; the hierarchy over the geometry is built once and outlives all of them.
+/// picture is the one that [`render`] gives, to the last bit, whatever the rounds were. A change starts the picture anew; the
+/// hierarchy over the geometry is built once and outlives all of them.
+///
+/// ```
+/// use velour::render::{Renderer, Settings, Silent};
+/// use velour::scene::{Scene, ShaderFiles};
+///
+/// let shaders = ShaderFiles::default()
+///     .with_shader("surface glow(color c = 1) { Ci = c * emission(); }")?
+///     .with_shader("surface matte() { Ci = 0.5 * diffuse(N); }")?;
+/// let xml = r#"<World><Camera eye="0,0,4" look_at="0,0,0" fov="60"/>
+///     <ShaderGroup name="ball">shader matte layer1;</ShaderGroup><Sphere center="0,0,0" radius="1"/>
+///     <ShaderGroup name="lamp">shader glow layer1;</ShaderGroup><Sphere center="0,3,3" radius="1"/></World>"#;
+/// let scene = Scene::load(xml, &[], &shaders)?;
+/// let settings = Settings { width: 16, height: 16, samples: 16, ..Settings::default() };
+/// let mut renderer = Renderer::new(&scene, &settings)?;
+/// while renderer.round_of(4, &Silent)? {
+///     let _so_far = renderer.picture();
+/// }
+/// let dim = renderer.picture().mean()[0];
+/// // The ball is given the shader of the lamp.
+/// let (ball, lamp) = (renderer.material("ball").unwrap(), renderer.material("lamp").unwrap());
+/// renderer.set_material(ball, scene.materials[lamp].surface.clone())?;
+/// renderer.finish(&Silent)?;
+/// assert!(renderer.picture().mean()[0] > dim);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Renderer {
     world: World,
     pool: rayon::ThreadPool,

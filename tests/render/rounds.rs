@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use velour::exec::Group;
 use velour::render::{Image, Progress, RenderError, Renderer, Settings, Silent, render};
-use velour::scene::{Camera, CameraFlaw, Scene};
+use velour::scene::{Camera, CameraFlaw, Object, Scene};
 
 /// Spheres, a quad and a cloth of triangles under a lamp and a sky that is sampled.
 const ROOM: &str = r#"<World><Camera eye="0,1,4" look_at="0,0,0" fov="60"/>
@@ -226,6 +226,23 @@ fn the_strangest_cameras_that_are_let_through_make_a_picture() {
         let image = whole(&wrong, &Settings { width, height, ..settings(2) });
         assert!(image.pixels.iter().all(|p| p.is_finite()), "{eye} {fov}");
     }
+}
+
+#[test]
+fn an_object_without_primitives_does_no_harm() {
+    let scene = scene(ROOM);
+    let mut geometry = (*scene.geometry).clone();
+    for material in 0..scene.materials.len() as u32 {
+        let object = Object { material, ..geometry.objects[0].clone() };
+        geometry.objects.push(object);
+    }
+    let more = Scene { geometry: Arc::new(geometry), ..scene.clone() };
+    assert!(bits(&whole(&more, &settings(2))) == bits(&whole(&scene, &settings(2))));
+    // As a mesh that keeps no face leaves it.
+    let mut bare = (*more.geometry).clone();
+    bare.primitives.clear();
+    let empty = Scene { geometry: Arc::new(bare), ..more };
+    assert!(whole(&empty, &settings(2)).pixels.iter().all(|p| p.is_finite()));
 }
 
 #[test]
