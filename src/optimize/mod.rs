@@ -5,6 +5,7 @@
 
 mod dead;
 mod derive;
+mod flow;
 mod fuse;
 mod uniform;
 
