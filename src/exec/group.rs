@@ -2,7 +2,7 @@
 
 use crate::ir::op::{Input, Routine};
 use crate::ir::program::*;
-use crate::lang::closures::{ClosureTable, Model};
+use crate::lang::closures::{ClosureId, ClosureTable, Model};
 use crate::lang::globals::Global;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -25,6 +25,8 @@ pub struct Group {
     /// See [`Group::spent`].
     spent: Arc<Vec<bool>>,
     models: Arc<Vec<Model>>,
+    /// The closures that can occur.
+    closures: Arc<Vec<ClosureId>>,
 }
 
 impl std::fmt::Debug for Group {
@@ -37,13 +39,16 @@ impl Group {
     /// A group of an optimised program.
     pub fn new(program: Program, table: Arc<ClosureTable>, locate: Locate) -> Self {
         let mut read = vec![0u32; program.regs.len()];
-        let mut models = Vec::new();
+        let (mut models, mut closures) = (Vec::new(), Vec::new());
         visit_instrs(&program.body, &mut |instr| {
             instr.reads(|reg| read[reg.0 as usize] += 1);
             if let Instr::Leaf { closure, .. } = instr {
                 let model = table.get(*closure).model;
                 if !models.contains(&model) {
                     models.push(model);
+                }
+                if !closures.contains(closure) {
+                    closures.push(*closure);
                 }
             }
         });
@@ -69,6 +74,7 @@ impl Group {
             inputs,
             spent: Arc::new(spent),
             models: Arc::new(models),
+            closures: Arc::new(closures),
         }
     }
 
@@ -96,6 +102,11 @@ impl Group {
     /// The scattering models that can occur.
     pub fn models(&self) -> &[Model] {
         &self.models
+    }
+
+    /// Can a closure occur that nests others, so that what it lets through depends on the direction?
+    pub fn nests(&self) -> bool {
+        self.closures.iter().any(|&id| self.table.get(id).nests())
     }
 
     /// Does it read a shader global?
