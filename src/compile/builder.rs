@@ -1,8 +1,8 @@
 //! Building a group: layers, parameters, connections.
 
-use super::Shader;
 use super::error::{GroupError, GroupSubject};
 use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
+use super::shader::Shader;
 use crate::exec::{Group, Locate};
 use crate::ir::lower::{Binding, Layer, LowerOptions, SPANS_PER_LAYER, lower};
 use crate::lang::closures::ClosureTable;
@@ -146,8 +146,14 @@ impl GroupBuilder {
             return Err(error);
         }
         let program = optimize(lower(&self.layers, self.lower), self.optimize);
-        crate::ir::verify::debug_verify(&program);
         Ok(Group::new(program, self.closures, locator(self.sources)))
+    }
+}
+
+impl Shader {
+    /// A group of this shader alone.
+    pub fn group(&self) -> GroupBuilder {
+        GroupBuilder::new(self.closures.clone()).layer(self.name(), self)
     }
 }
 
