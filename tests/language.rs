@@ -286,7 +286,7 @@ fn indices_outside_are_reported_and_clamped() {
         ),
         (
             r#"int a[3] = {1, 2, 3}; a[-1 - (int)u] = 7; printf("%d\n", a[0]);"#,
-            "Error(\"test.osl:1:48: error: index -1 is outside 0..2\")\n7\n",
+            "Error(\"test.osl:1:36: error: index -1 is outside 0..2\")\n7\n",
         ),
     ]);
 }

@@ -37,7 +37,6 @@ const CIRCLES: &[&[&str]] = &[
         "bsdf/microfacet/mod.rs",
     ],
     &["bsdf/sheen/albedo.rs", "bsdf/sheen/fits.rs", "bsdf/sheen/shadowing.rs"],
-    &["check/call.rs", "check/rank.rs"],
     &["cli/chart.rs", "cli/check.rs", "cli/info.rs", "cli/mod.rs", "cli/render.rs", "cli/tree.rs", "cli/verify.rs"],
     &[
         "closure/curves.rs",
@@ -56,7 +55,6 @@ const CIRCLES: &[&[&str]] = &[
         "closure/sampling.rs",
         "closure/surfaces.rs",
     ],
-    &["compile/builder.rs", "compile/mod.rs"],
     &[
         "lang/closures/boundaries.rs",
         "lang/closures/classic.rs",

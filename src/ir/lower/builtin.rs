@@ -6,6 +6,7 @@ use crate::check::typed::{Argument, Expr, ExprKind, VarId};
 use crate::ir::op::*;
 use crate::ir::program::*;
 use crate::lang::types::Base;
+use velour_grammar::Span;
 
 impl Lower<'_> {
     /// A call of a builtin.
@@ -198,7 +199,7 @@ impl Lower<'_> {
         let value = match arg {
             Argument::In(expr) => self.expr(expr),
             Argument::Out(place) => {
-                let target = self.target(place);
+                let target = self.target(place, Span::NONE);
                 self.load(&target)
             }
         };

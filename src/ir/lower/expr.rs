@@ -9,6 +9,7 @@ use crate::lang::closures::ClosureId;
 use crate::lang::globals::Global;
 use crate::lang::symbols::Symbol;
 use crate::lang::types::{Base, Type};
+use velour_grammar::Span;
 use velour_grammar::ast::BinaryOp;
 
 impl Lower<'_> {
@@ -51,13 +52,13 @@ impl Lower<'_> {
                 last
             }
             ExprKind::Assign(place, value) => {
-                let (value, target) = self.with_place(value, place);
+                let (value, target) = self.with_place(value, place, expr.span);
                 let value = self.stable(&value);
                 self.write(&target, &value);
                 value
             }
-            ExprKind::Update(op, place, value) => self.update(*op, place, value),
-            ExprKind::Step { place, increment, prefix } => self.step(place, *increment, *prefix),
+            ExprKind::Update(op, place, value) => self.update(*op, place, value, expr.span),
+            ExprKind::Step { place, increment, prefix } => self.step(place, *increment, *prefix, expr.span),
             ExprKind::Call(id, args) => self.call(*id, args),
             ExprKind::Builtin(name, args) => self.builtin(name, args, expr),
             ExprKind::Closure(id, params, keywords) => single(self.closure(*id, params, keywords, expr)),
@@ -86,8 +87,8 @@ impl Lower<'_> {
         }
     }
 
-    fn update(&mut self, op: BinaryOp, place: &Place, value: &Expr) -> Value {
-        let (right, target) = self.with_place(value, place);
+    fn update(&mut self, op: BinaryOp, place: &Place, value: &Expr, span: Span) -> Value {
+        let (right, target) = self.with_place(value, place, span);
         let right = self.regs(&right);
         let left = self.load(&target);
         let left = self.regs(&left);
@@ -110,8 +111,8 @@ impl Lower<'_> {
         self.stable(&new)
     }
 
-    fn step(&mut self, place: &Place, increment: bool, prefix: bool) -> Value {
-        let target = self.target(place);
+    fn step(&mut self, place: &Place, increment: bool, prefix: bool, span: Span) -> Value {
+        let target = self.target(place, span);
         let old = self.load(&target);
         let old = self.stable(&old);
         let regs = self.regs(&old);

@@ -13,6 +13,7 @@ use super::value::Value;
 use crate::check::typed::{Access, Argument, Expr, ExprKind, Place};
 use crate::ir::program::Reg;
 use crate::lang::types::Base;
+use velour_grammar::Span;
 
 /// An operand whose effects have run.
 enum Operand {
@@ -105,7 +106,7 @@ impl Lower<'_> {
     }
 
     /// A value and the place that an assignment gives it to; the conversion of the value is part of the assignment.
-    pub(super) fn with_place(&mut self, value: &Expr, place: &Place) -> (Value, Target) {
+    pub(super) fn with_place(&mut self, value: &Expr, place: &Place, span: Span) -> (Value, Target) {
         let (inner, conversion) = bare(value);
         let exprs: Vec<&Expr> = [inner].into_iter().chain(indices(place)).collect();
         let mut values = self.operands(&exprs).into_iter();
@@ -114,6 +115,7 @@ impl Lower<'_> {
             let regs = self.regs(&value);
             value = Value::Regs(self.convert(&regs, from, to));
         }
+        self.at(span);
         let target = self.target_at(place, &mut values);
         (value, target)
     }

@@ -5,6 +5,7 @@ use super::value::Value;
 use crate::check::typed::{Access, Expr, Place, VarId};
 use crate::ir::op::IntBinary;
 use crate::ir::program::Reg;
+use velour_grammar::Span;
 
 /// A place with its indices computed.
 pub(super) struct Target {
@@ -34,8 +35,9 @@ pub(super) fn indices(place: &Place) -> Vec<&Expr> {
 
 impl Lower<'_> {
     /// Walks to a place. Index expressions are evaluated once, here.
-    pub(super) fn target(&mut self, place: &Place) -> Target {
+    pub(super) fn target(&mut self, place: &Place, span: Span) -> Target {
         let mut values = self.operands(&indices(place)).into_iter();
+        self.at(span);
         self.target_at(place, &mut values)
     }
 
