@@ -8,7 +8,7 @@ mod error;
 mod fit;
 
 pub use builder::GroupBuilder;
-pub use error::{CompileError, GroupError, GroupSubject};
+pub use error::{CompileError, GroupError, GroupProblem, GroupSubject};
 
 use crate::check::{check, typed};
 use crate::lang::closures::ClosureTable;
