@@ -11,5 +11,5 @@ mod shader;
 
 pub use builder::GroupBuilder;
 pub use compiler::{Checked, Compiler, STDOSL, compile};
-pub use error::{CompileError, GroupError, GroupSubject};
+pub use error::{CompileError, GroupError, GroupProblem, GroupSubject};
 pub use shader::Shader;
