@@ -1,11 +1,10 @@
 //! Building a group: layers, parameters, connections.
 
-use super::Shader;
 use super::error::{GroupError, GroupProblem, GroupSubject};
 use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
+use super::shader::Shader;
 use crate::exec::{Group, Locate};
-use crate::ir::lower::value::SPANS_PER_LAYER;
-use crate::ir::lower::{Binding, Layer, LowerOptions, lower};
+use crate::ir::lower::{Binding, Layer, LowerOptions, SPANS_PER_LAYER, lower};
 use crate::lang::closures::ClosureTable;
 use crate::lang::types::{Base, Type};
 use crate::optimize::{OptimizeOptions, optimize};
@@ -144,8 +143,14 @@ impl GroupBuilder {
             return Err(error);
         }
         let program = optimize(lower(&self.layers, self.lower), self.optimize);
-        crate::ir::verify::debug_verify(&program);
         Ok(Group::new(program, self.closures, locator(self.sources)))
+    }
+}
+
+impl Shader {
+    /// A group of this shader alone.
+    pub fn group(&self) -> GroupBuilder {
+        GroupBuilder::new(self.closures.clone()).layer(self.name(), self)
     }
 }
 

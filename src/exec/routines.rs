@@ -57,6 +57,7 @@ impl Run<'_> {
             Routine::Attribute(ty) => self.attribute(*ty, dst, src),
             Routine::SpaceMatrix => self.space_matrix(dst, src, span),
             Routine::TransformColor => self.transform_color(dst, src, span),
+            Routine::ClampIndex(len) => self.clamp_index(*len, dst[0], src[0], span),
             _ => self.each_lane(routine, dst, src),
         }
     }
@@ -94,7 +95,8 @@ impl Run<'_> {
         for lane in 0..self.lanes_of(dst[0]) {
             let args = Lane { run: self, src, lane };
             let (from, to) = (args.s(0), args.s(1));
-            let found = self.host.matrix(from, to);
+            // Of a space to itself without asking, as the compiler has it where it knows both names.
+            let found = if from == to { Some(matrix::IDENTITY) } else { self.host.matrix(from, to) };
             if found.is_none() && self.s.mask[lane] != 0 {
                 let place = (self.group.locate)(span);
                 self.report_once(lane, format!("{place}: error: there is no space \"{from}\" or no space \"{to}\""));

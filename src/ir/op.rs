@@ -215,6 +215,8 @@ pub enum Routine {
     Determinant,
     /// The matrix from one named space to another: two symbols to 16 and an int that is 1 when both are known.
     SpaceMatrix,
+    /// The number of a component, kept inside `0..n`; one that is outside is reported.
+    ClampIndex(u32),
     /// `blackbody`
     Blackbody,
     /// `wavelength_color`

@@ -5,10 +5,12 @@
 
 mod dead;
 mod derive;
+mod flow;
 mod fuse;
 mod uniform;
 
 use crate::ir::program::Program;
+use crate::ir::verify::debug_verify;
 
 /// Which passes run besides the ones a program cannot do without.
 #[derive(Clone, Copy, Debug)]
@@ -27,19 +29,24 @@ impl Default for OptimizeOptions {
     }
 }
 
-/// Prepares a lowered program for the machine.
+/// Prepares a lowered program for the machine. In debug builds each pass is held to what a program promises.
 pub fn optimize(mut program: Program, options: OptimizeOptions) -> Program {
+    debug_verify(&program);
     if options.dead_code {
         dead::remove(&mut program);
+        debug_verify(&program);
     }
     derive::expand(&mut program);
+    debug_verify(&program);
     if options.dead_code {
         dead::remove(&mut program);
     }
     uniform::mark(&mut program, options.uniform);
+    debug_verify(&program);
     // Last, because the passes before it know single operations only.
     if options.fuse {
         fuse::pairs(&mut program);
+        debug_verify(&program);
     }
     program
 }
