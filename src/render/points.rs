@@ -63,7 +63,7 @@ lanes! {
             let [a, b, c] = [0, 1, 2].map(|k| get(&hits.form[k], i));
             let form = Form { a, b, c, round: hits.round[i] != 0 };
             let direction = get(&hits.direction, i);
-            let (p, n) = form.meet(get(&hits.origin, i), direction, hits.met.map(|row| row[i]));
+            let (p, n) = form.meet(get(&hits.origin, i), direction, [hits.met[0][i], hits.met[1][i], hits.met[2][i]]);
             let behind = n.dot(direction) > 0.0;
             set(&mut hits.p, i, p);
             set(&mut hits.outward, i, n);

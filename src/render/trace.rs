@@ -56,12 +56,12 @@ pub fn render_tile(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u
             trace(world, wave);
             for sample in range.clone() {
                 let half = sample as usize % halves;
-                let mut path = (sample - range.start) as usize;
-                for pixel in first..end {
-                    let at = [pixel % tile.width, pixel / tile.width];
+                let (mut x, mut y) = (first % tile.width, first / tile.width);
+                let paths = (sample - range.start) as usize..wave.paths.len();
+                for path in paths.step_by(range.len()) {
                     let Path { radiance, alpha, .. } = wave.paths[path];
-                    sums.add(half, at, wave.positions[path], radiance.to_array(), alpha);
-                    path += range.len();
+                    sums.add(half, [x, y], wave.positions[path], radiance.to_array(), alpha);
+                    (x, y) = if x + 1 < tile.width { (x + 1, y) } else { (0, y + 1) };
                 }
             }
         }

@@ -3,7 +3,6 @@
 //! The stages are in `stages`, their order in `trace`. A path only ever adds to its own radiance, in the order of its own
 //! bounces, so the sums do not depend on how paths were batched.
 
-use super::accel::{Hit, Ray};
 use super::lanes::{Draws, Lanes};
 use super::light::LightLanes;
 use super::path::{Dropped, Path, ShadowRay};
@@ -41,10 +40,6 @@ pub struct Wave {
     pub sky_shadows: ShadowQueue,
     /// What the camera's rays are made from.
     pub camera: CameraLanes,
-    /// Rays that the hierarchy is asked for at once.
-    pub rays: Vec<Ray>,
-    /// Its answers.
-    pub hits: Vec<Hit>,
     /// What had to be dropped.
     pub dropped: Dropped,
     /// Rays traced, of all kinds.
@@ -89,8 +84,8 @@ pub struct CameraLanes {
 pub struct ShadowQueue {
     /// The rays.
     pub rays: Vec<ShadowRay>,
-    /// Whether something is in the way of each ray that the hierarchy was asked for.
-    pub blocked: Vec<bool>,
+    /// Those that nothing is in the way of.
+    pub clear: Vec<u32>,
     /// Material and number of those that got through to a light that must be shaded.
     pub reached: Vec<(u32, u32)>,
     /// Of a batch of those, the segments.
@@ -114,8 +109,6 @@ impl Wave {
             light_shadows: ShadowQueue::default(),
             sky_shadows: ShadowQueue::default(),
             camera: CameraLanes::default(),
-            rays: Vec::new(),
-            hits: Vec::new(),
             dropped: Dropped::default(),
             traced: 0,
         }

@@ -76,16 +76,18 @@ impl Camera {
 
     /// The first thing that keeps this camera from making a picture, if any.
     pub fn flaw(&self) -> Option<CameraFlaw> {
-        // What is compared with a NaN is false, which is why each is asked for what is right.
-        let aside = self.direction.cross(self.up).length() > 1e-6 * self.up.length();
-        let angle = self.fov > 0.0 && self.fov < 180.0;
-        let right = [
-            (self.eye.is_finite(), CameraFlaw::Eye),
-            (self.direction.is_normalized(), CameraFlaw::Direction),
-            (aside, CameraFlaw::Up),
-            (angle, CameraFlaw::Angle),
-            (self.fov >= Self::LEAST_FOV, CameraFlaw::TooNarrow),
-        ];
-        right.into_iter().find(|(right, _)| !right).map(|(_, flaw)| flaw)
+        if !self.eye.is_finite() {
+            Some(CameraFlaw::Eye)
+        } else if !self.direction.is_normalized() {
+            Some(CameraFlaw::Direction)
+        } else if !self.up.is_finite() || self.direction.cross(self.up).length() <= 1e-6 * self.up.length() {
+            Some(CameraFlaw::Up)
+        } else if !(self.fov > 0.0 && self.fov < 180.0) {
+            Some(CameraFlaw::Angle)
+        } else if self.fov < Self::LEAST_FOV {
+            Some(CameraFlaw::TooNarrow)
+        } else {
+            None
+        }
     }
 }

@@ -50,6 +50,12 @@ pub struct TreeScatterer {
     complaint: Option<String>,
 }
 
+impl std::fmt::Debug for TreeScatterer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TreeScatterer").field("spot", &self.spot).finish_non_exhaustive()
+    }
+}
+
 impl TreeScatterer {
     /// A scatterer of a group.
     pub fn new(group: Group, spot: Spot, settings: Settings) -> Self {
@@ -62,7 +68,7 @@ impl Scatterer for TreeScatterer {
     fn look(&mut self, wo: &Column3) {
         self.spot.points(wo, &mut self.points);
         let tree = self.machine.shade(&self.group, &self.points);
-        self.lobes.flatten(self.group.table(), tree, wo, &self.points.ng);
+        self.lobes.flatten(self.group.library(), tree, wo, &self.points.ng);
         if let (Some(dropped), None) = (self.lobes.dropped().first(), &self.complaint) {
             let place = tree.site(dropped.node).map_or(String::new(), |site| format!("{}: ", self.group.place(site)));
             self.complaint = Some(format!("{place}`{}` has a parameter or weight that is no number", dropped.closure));

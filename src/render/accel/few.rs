@@ -4,7 +4,7 @@
 //! is in them. Rays are the lanes, so that the nearest hit is a select, not a search. The formulas are those of
 //! `shape.rs`, term by term, so that both methods give the same answers.
 
-use super::ray::{Hit, NOTHING, Ray};
+use super::ray::{Hit, NOTHING, Questions, Ray};
 use crate::lanes;
 use crate::render::block::{Row, WIDTH};
 use crate::scene::{Geometry, Shape};
@@ -22,6 +22,13 @@ impl Few {
         let shapes: Vec<Shape> = geometry.primitives.iter().take(most.saturating_add(1)).map(|p| p.shape).collect();
         let flat = shapes.iter().all(|s| !matches!(s, Shape::Triangle { .. }));
         (flat && shapes.len() <= most).then_some(Few { shapes })
+    }
+
+    /// Gives a hit of a sphere, and no hit, the surface coordinates that they have by any method.
+    pub fn tidy(&self, hit: &mut Hit) {
+        if !matches!(self.shapes.get(hit.primitive as usize), Some(Shape::Quad { .. })) {
+            (hit.u, hit.v) = (0.0, 0.0);
+        }
     }
 }
 
@@ -63,26 +70,13 @@ impl Block {
         }
     }
 
-    /// Takes `rays` into the first lanes, each to meet what is nearer than its reach, or as near if `at_reach` says so.
+    /// Takes a ray into lane `k`, to meet what is nearer than its reach, or as near if `at_reach` says so.
     #[inline(always)]
-    fn load(&mut self, rays: &[Ray], at_reach: bool) {
-        for (k, ray) in rays.iter().enumerate() {
-            (self.ox[k], self.oy[k], self.oz[k]) = (ray.origin.x, ray.origin.y, ray.origin.z);
-            (self.dx[k], self.dy[k], self.dz[k]) = (ray.direction.x, ray.direction.y, ray.direction.z);
-            self.t[k] = if at_reach { ray.reach.next_up() } else { ray.reach };
-            (self.skip[k], self.target[k], self.id[k]) = (ray.skip, ray.target, NOTHING);
-        }
-    }
-
-    /// What the ray of a lane has met. A lane keeps the surface coordinates of a quad behind a nearer sphere.
-    #[inline(always)]
-    fn hit(&self, few: &Few, k: usize) -> Hit {
-        let (t, primitive) = (self.t[k], self.id[k]);
-        match few.shapes.get(primitive as usize) {
-            None => Hit::NONE,
-            Some(Shape::Sphere { .. }) => Hit { t, primitive, u: 0.0, v: 0.0 },
-            Some(_) => Hit { t, primitive, u: self.u[k], v: self.v[k] },
-        }
+    fn load(&mut self, k: usize, ray: &Ray, at_reach: bool) {
+        (self.ox[k], self.oy[k], self.oz[k]) = (ray.origin.x, ray.origin.y, ray.origin.z);
+        (self.dx[k], self.dy[k], self.dz[k]) = (ray.direction.x, ray.direction.y, ray.direction.z);
+        self.t[k] = if at_reach { ray.reach.next_up() } else { ray.reach };
+        (self.skip[k], self.target[k], self.id[k]) = (ray.skip, ray.target, NOTHING);
     }
 
     #[inline(always)]
@@ -154,28 +148,35 @@ impl Block {
 }
 
 lanes! {
-    /// Gives `hits` the closest hit of each ray.
-    pub fn closest(few: &Few, rays: &[Ray], hits: &mut [Hit]) {
+    /// Answers with the closest hit of each ray. A lane keeps the surface coordinates of a quad behind a nearer sphere.
+    pub fn closest<Asker: Questions<Hit>>(few: &Few, asker: &mut Asker) {
         let mut block = Block::empty();
-        for (rays, hits) in rays.chunks(WIDTH).zip(hits.chunks_mut(WIDTH)) {
-            block.load(rays, true);
+        for start in (0..asker.count()).step_by(WIDTH) {
+            let len = WIDTH.min(asker.count() - start);
+            for k in 0..len {
+                block.load(k, &asker.ray(start + k), true);
+            }
             block.meet_all(few);
-            for (k, hit) in hits.iter_mut().enumerate() {
-                *hit = block.hit(few, k);
+            for k in 0..len {
+                let t = if block.id[k] == NOTHING { f32::INFINITY } else { block.t[k] };
+                asker.answer(start + k, Hit { t, primitive: block.id[k], u: block.u[k], v: block.v[k] });
             }
         }
     }
 }
 
 lanes! {
-    /// Gives `blocked` whether anything is in the way of each ray.
-    pub fn any(few: &Few, rays: &[Ray], blocked: &mut [bool]) {
+    /// Answers whether anything is in the way of each ray.
+    pub fn any<Asker: Questions<bool>>(few: &Few, asker: &mut Asker) {
         let mut block = Block::empty();
-        for (rays, blocked) in rays.chunks(WIDTH).zip(blocked.chunks_mut(WIDTH)) {
-            block.load(rays, false);
+        for start in (0..asker.count()).step_by(WIDTH) {
+            let len = WIDTH.min(asker.count() - start);
+            for k in 0..len {
+                block.load(k, &asker.ray(start + k), false);
+            }
             block.meet_all(few);
-            for (k, blocked) in blocked.iter_mut().enumerate() {
-                *blocked = block.id[k] != NOTHING;
+            for k in 0..len {
+                asker.answer(start + k, block.id[k] != NOTHING);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Geometry prepared for rays: by which method, and where a ray starts that leaves a surface.
 
 use super::few::{self, Few};
-use super::ray::{Hit, Ray};
+use super::ray::{Hit, Lists, Questions, Ray};
 use super::tree::Tree;
 use super::walk;
 use crate::scene::{Geometry, Shape};
@@ -22,6 +22,9 @@ fn magnitude(shape: &Shape) -> f32 {
 /// Up to this many primitives, all of them are tested. Measured at seven only; the bound is a guess from the cost of
 /// one test.
 const MOST: usize = 24;
+
+/// Rays that are handed to the walk at once.
+const PACK: usize = 256;
 
 /// How rays find what they hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,24 +80,55 @@ impl Accel {
         }
     }
 
-    /// Gives `hits` the closest hit of each ray, up to its reach and not counting what it skips or goes to.
-    pub fn closest(&self, rays: &[Ray], hits: &mut Vec<Hit>) {
-        hits.clear();
-        hits.resize(rays.len(), Hit::NONE);
-        match &self.structure {
-            Structure::Few(few) => few::closest(few, rays, hits),
-            Structure::Wide(tree) => walk::closest(tree, rays, hits),
+    /// Answers with the closest hit of each ray, up to its reach and not counting what it skips or goes to.
+    pub fn answer_closest(&self, asker: &mut impl Questions<Hit>) {
+        let tree = match &self.structure {
+            Structure::Few(few) => return few::closest(few, asker),
+            Structure::Wide(tree) => tree,
+        };
+        let mut rays = Vec::with_capacity(PACK);
+        let mut hits = [Hit::NONE; PACK];
+        for start in (0..asker.count()).step_by(PACK) {
+            let numbers = start..asker.count().min(start + PACK);
+            rays.clear();
+            rays.extend(numbers.clone().map(|number| asker.ray(number)));
+            walk::closest(tree, &rays, &mut hits);
+            numbers.zip(&hits).for_each(|(number, hit)| asker.answer(number, *hit));
         }
     }
 
-    /// Gives `blocked` whether anything but what it skips or goes to is in the way of each ray, short of its reach.
+    /// Answers whether anything but what it skips or goes to is in the way of each ray, short of its reach.
+    pub fn answer_any(&self, asker: &mut impl Questions<bool>) {
+        let tree = match &self.structure {
+            Structure::Few(few) => return few::any(few, asker),
+            Structure::Wide(tree) => tree,
+        };
+        let mut rays = Vec::with_capacity(PACK);
+        let mut blocked = [false; PACK];
+        for start in (0..asker.count()).step_by(PACK) {
+            let numbers = start..asker.count().min(start + PACK);
+            rays.clear();
+            rays.extend(numbers.clone().map(|number| asker.ray(number)));
+            walk::any(tree, &rays, &mut blocked);
+            numbers.zip(&blocked).for_each(|(number, blocked)| asker.answer(number, *blocked));
+        }
+    }
+
+    /// Gives `hits` the closest hit of each ray, as [`answer_closest`](Accel::answer_closest) does.
+    pub fn closest(&self, rays: &[Ray], hits: &mut Vec<Hit>) {
+        hits.clear();
+        hits.resize(rays.len(), Hit::NONE);
+        self.answer_closest(&mut Lists { rays, answers: hits });
+        if let Structure::Few(few) = &self.structure {
+            hits.iter_mut().for_each(|hit| few.tidy(hit));
+        }
+    }
+
+    /// Gives `blocked` whether anything is in the way of each ray, as [`answer_any`](Accel::answer_any) does.
     pub fn any(&self, rays: &[Ray], blocked: &mut Vec<bool>) {
         blocked.clear();
         blocked.resize(rays.len(), false);
-        match &self.structure {
-            Structure::Few(few) => few::any(few, rays, blocked),
-            Structure::Wide(tree) => walk::any(tree, rays, blocked),
-        }
+        self.answer_any(&mut Lists { rays, answers: blocked });
     }
 
     /// Where a ray toward `direction` starts that leaves `point` of `primitive`.

@@ -45,4 +45,4 @@ mod tree;
 mod walk;
 
 pub use hierarchy::{Accel, Method};
-pub use ray::{Hit, NOTHING, Ray};
+pub use ray::{Hit, Lists, NOTHING, Questions, Ray};

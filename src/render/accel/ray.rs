@@ -46,3 +46,42 @@ impl Hit {
     /// Nothing is hit.
     pub const NONE: Hit = Hit { t: f32::INFINITY, primitive: NOTHING, u: 0.0, v: 0.0 };
 }
+
+/// Rays of somebody who wants an answer to each: the closest hit (`Hit`), or whether anything is in the way (`bool`).
+///
+/// Whoever asks keeps its rays in a form of its own, and they are read where they lie: to copy them into a list first, and
+/// the answers out of one, took a tenth of the time of figure 1.
+pub trait Questions<Answer> {
+    /// How many rays there are.
+    fn count(&self) -> usize;
+    /// One of them.
+    fn ray(&self, number: usize) -> Ray;
+    /// Takes the answer to one. The surface coordinates of a sphere mean nothing.
+    fn answer(&mut self, number: usize, answer: Answer);
+}
+
+/// Rays and answers in lists beside each other.
+#[derive(Debug)]
+pub struct Lists<'a, Answer> {
+    /// The rays.
+    pub rays: &'a [Ray],
+    /// As many answers.
+    pub answers: &'a mut [Answer],
+}
+
+impl<Answer> Questions<Answer> for Lists<'_, Answer> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.rays.len()
+    }
+
+    #[inline(always)]
+    fn ray(&self, number: usize) -> Ray {
+        self.rays[number]
+    }
+
+    #[inline(always)]
+    fn answer(&mut self, number: usize, answer: Answer) {
+        self.answers[number] = answer;
+    }
+}

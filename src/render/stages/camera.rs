@@ -26,12 +26,13 @@ pub fn start(world: &World, wave: &mut Wave, x: u32, y: u32, samples: Range<u32>
     }
     let [across, down] = [0, 1].map(|k| lanes.draws.numbers[k].as_slice());
     directions(&world.camera, x as f32, y as f32, [across, down], &mut lanes.directions);
-    for lane in 0..lanes.draws.seeds.len() {
+    let len = lanes.draws.seeds.len();
+    let first = wave.paths.len() as u32;
+    wave.active.extend(first..first + len as u32);
+    wave.positions.extend(across.iter().zip(down).map(|(x, y)| [*x, *y]));
+    wave.paths.extend((0..len).map(|lane| {
         let direction = lanes.directions.get(lane);
         let spread = if world.plan.cones { world.camera.spread(direction) } else { 0.0 };
-        let (seed, index) = (lanes.draws.seeds[lane], lanes.draws.indices[lane]);
-        wave.positions.push([across[lane], down[lane]]);
-        wave.active.push(wave.paths.len() as u32);
-        wave.paths.push(Path::new(world.camera.eye(), direction, spread, seed, index));
-    }
+        Path::new(world.camera.eye(), direction, spread, lanes.draws.seeds[lane], lanes.draws.indices[lane])
+    }));
 }

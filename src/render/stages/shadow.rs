@@ -1,6 +1,6 @@
 //! Shadows: the rays that a bounce has queued are traced together, and the lights that they reach shaded in batches.
 
-use crate::render::accel::NOTHING;
+use crate::render::accel::{NOTHING, Questions, Ray};
 use crate::render::path::ShadowRay;
 use crate::render::points::{fill, fill_sky};
 use crate::render::segment::ray_type;
@@ -8,8 +8,30 @@ use crate::render::sky::Sky;
 use crate::render::wave::{ShadowQueue, Wave};
 use crate::render::world::World;
 
-/// Rays that the hierarchy is asked for at once: few enough to stay in the nearest cache.
-const PACK: usize = 256;
+/// The rays of a queue, of which the clear ones are listed.
+struct Shadows<'a> {
+    rays: &'a [ShadowRay],
+    clear: &'a mut Vec<u32>,
+}
+
+impl Questions<bool> for Shadows<'_> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.rays.len()
+    }
+
+    #[inline(always)]
+    fn ray(&self, number: usize) -> Ray {
+        self.rays[number].ray
+    }
+
+    #[inline(always)]
+    fn answer(&mut self, number: usize, blocked: bool) {
+        if !blocked {
+            self.clear.push(number as u32);
+        }
+    }
+}
 
 /// Traces all queued shadow rays and adds what they bring.
 pub fn trace_shadows(world: &World, wave: &mut Wave) {
@@ -27,25 +49,23 @@ pub fn trace_shadows(world: &World, wave: &mut Wave) {
 
 /// Adds what the rays that get through bring, where that is known; the others are listed as `reached`.
 fn trace_queue(world: &World, wave: &mut Wave, queue: &mut ShadowQueue) {
-    let Wave { paths, rays, dropped, traced, .. } = wave;
-    let ShadowQueue { rays: shadows, blocked, reached, .. } = queue;
+    let Wave { paths, dropped, traced, .. } = wave;
+    let ShadowQueue { rays, clear, reached, .. } = queue;
+    *traced += rays.len() as u64;
+    clear.clear();
+    world.accel.answer_any(&mut Shadows { rays, clear });
     reached.clear();
-    *traced += shadows.len() as u64;
-    for (number, pack) in shadows.chunks(PACK).enumerate() {
-        rays.clear();
-        rays.extend(pack.iter().map(|shadow| shadow.ray));
-        world.accel.any(rays, blocked);
-        for (k, shadow) in pack.iter().enumerate().filter(|(k, _)| !blocked[*k]) {
-            let material = match (&world.sky, shadow.ray.target) {
-                (Sky::Shader { material, .. }, NOTHING) => *material,
-                (Sky::Constant(_), NOTHING) => continue,
-                (Sky::Shader { .. } | Sky::Constant(_), light) => world.material_of(light),
-            };
-            if shadow.known {
-                paths[shadow.path as usize].gather(shadow.contribution, material, dropped);
-            } else {
-                reached.push((material as u32, (number * PACK + k) as u32));
-            }
+    for &i in clear.iter() {
+        let shadow = &rays[i as usize];
+        let material = match (&world.sky, shadow.ray.target) {
+            (Sky::Shader { material, .. }, NOTHING) => *material,
+            (Sky::Constant(_), NOTHING) => continue,
+            (Sky::Shader { .. } | Sky::Constant(_), light) => world.material_of(light),
+        };
+        if shadow.known {
+            paths[shadow.path as usize].gather(shadow.contribution, material, dropped);
+        } else {
+            reached.push((material as u32, i));
         }
     }
     reached.sort_unstable();
