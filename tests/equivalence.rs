@@ -84,7 +84,7 @@ fn same_everywhere(text: &str) {
     let plain = shader.group().keep_outputs().unoptimized().build().unwrap();
     let best = shader.group().keep_outputs().build().unwrap();
     for group in [&plain, &best] {
-        verify(group.program()).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
+        verify(group.program(), group.table()).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
     }
     let reference = results(&plain, 1);
     for (group, name) in [(&plain, "unoptimised"), (&best, "optimised")] {

@@ -147,8 +147,12 @@ impl GroupBuilder {
             return Err(error);
         }
         let program = optimize(lower(&self.layers, self.lower), self.optimize);
-        crate::ir::verify::debug_verify(&program);
-        Ok(Group::new(program, self.closures, locator(self.sources)))
+        let last = self.layers.last().map_or(String::new(), |layer| layer.name.clone());
+        Group::new(program, self.closures, locator(self.sources)).map_err(|error| GroupError {
+            message: format!("the shader cannot be run: {error}"),
+            help: "this is a limit of the machine, or a mistake of the compiler that should be reported".to_owned(),
+            subject: GroupSubject::Layer(last),
+        })
     }
 }
 

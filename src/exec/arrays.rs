@@ -14,7 +14,10 @@ impl Run<'_> {
         }
         if self.s.mask[lane] != 0 {
             let place = (self.group.locate)(span);
-            let message = format!("{place}: error: index {wanted} is outside 0..{}", len.saturating_sub(1));
+            let message = match len.checked_sub(1) {
+                Some(last) => format!("{place}: error: index {wanted} is outside 0..{last}"),
+                None => format!("{place}: error: index {wanted} is outside an array without elements"),
+            };
             self.report_once(lane, message);
         }
         (wanted.max(0) as usize).min(len.saturating_sub(1) as usize)
@@ -27,6 +30,15 @@ impl Run<'_> {
 
     pub(super) fn array_get(&mut self, dst: Reg, array: ArrayId, component: u32, index: Reg, span: Span) {
         let info = self.group.program.arrays[array.0 as usize];
+        if info.len == 0 {
+            self.checked(index, self.first_active(), 0, span);
+            match info.kind {
+                Kind::Float => self.regs.floats[dst.0 as usize].fill(0.0),
+                Kind::Int | Kind::String => self.regs.ints[dst.0 as usize].fill(0),
+                Kind::Closure => self.regs.closures[dst.0 as usize] = None,
+            }
+            return;
+        }
         if info.kind == Kind::Closure {
             return self.closure_array_get(dst, array, index, span);
         }
@@ -63,6 +75,10 @@ impl Run<'_> {
         span: Span,
     ) {
         let info = self.group.program.arrays[array.0 as usize];
+        if info.len == 0 {
+            self.checked(index, self.first_active(), 0, span);
+            return;
+        }
         if info.kind == Kind::Closure {
             return self.closure_array_set(array, index, src, masked, span);
         }

@@ -1,7 +1,8 @@
 //! A compiled shader group: what a host makes once and shades with for ever.
 
-use crate::ir::op::{Input, Routine};
+use crate::ir::op::{Input, Reach};
 use crate::ir::program::*;
+use crate::ir::verify::{VerifyError, verify};
 use crate::lang::closures::{ClosureTable, Model};
 use crate::lang::globals::Global;
 use std::collections::HashSet;
@@ -35,7 +36,11 @@ impl std::fmt::Debug for Group {
 
 impl Group {
     /// A group of an optimised program.
-    pub fn new(program: Program, table: Arc<ClosureTable>, locate: Locate) -> Self {
+    ///
+    /// # Errors
+    /// The first promise of [`crate::ir::verify`] that the program breaks.
+    pub fn new(program: Program, table: Arc<ClosureTable>, locate: Locate) -> Result<Self, VerifyError> {
+        verify(&program, &table)?;
         let mut read = vec![0u32; program.regs.len()];
         let mut models = Vec::new();
         visit_instrs(&program.body, &mut |instr| {
@@ -61,7 +66,7 @@ impl Group {
         let mut spent = vec![false; program.regs.len()];
         mark_spent(&program, &program.body, &read, &mut spent);
         let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
-        Group {
+        Ok(Group {
             id,
             program: Arc::new(program),
             table,
@@ -69,7 +74,7 @@ impl Group {
             inputs,
             spent: Arc::new(spent),
             models: Arc::new(models),
-        }
+        })
     }
 
     /// The program.
@@ -125,7 +130,7 @@ impl Group {
     pub fn varies_on_object(&self) -> bool {
         let mut rays = false;
         visit_instrs(&self.program.body, &mut |instr| {
-            rays |= matches!(instr, Instr::Call { routine: Routine::RayType, .. });
+            rays |= matches!(instr, Instr::Call { routine, .. } if routine.declaration().reach == Reach::Lane);
         });
         rays || self.inputs.iter().any(|(_, input)| *input != Input::SurfaceArea)
     }

@@ -96,6 +96,10 @@ impl Machine {
     /// [`Machine::float`] until the next batch.
     pub fn shade(&mut self, group: &Group, points: &Points) -> &Tree {
         let n = points.len;
+        if n == 0 {
+            self.tree.clear(0);
+            return &self.tree;
+        }
         let regs = self.files.entry(group.id).or_default();
         regs.prepare(group, n);
         regs.forget_closures();

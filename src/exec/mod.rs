@@ -13,10 +13,12 @@ mod closures;
 mod group;
 mod host;
 mod kernels;
+mod lane;
 mod machine;
 mod noise;
 mod points;
 mod routines;
+mod smooth;
 mod text;
 
 pub use group::{Group, Locate};

@@ -40,6 +40,12 @@ impl Symbol {
         Symbol(id)
     }
 
+    /// Is there a text of this number?
+    pub fn exists(self) -> bool {
+        let table = TABLE.read().unwrap_or_else(|e| e.into_inner());
+        usize::try_from(self.0).is_ok_and(|i| i < table.texts.len())
+    }
+
     /// The text of the symbol; an unknown number is the empty string.
     pub fn text(self) -> &'static str {
         let table = TABLE.read().unwrap_or_else(|e| e.into_inner());

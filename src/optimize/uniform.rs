@@ -3,7 +3,7 @@
 //! A register varies when something it is computed from varies, or when it is written where only some lanes run.
 //! Starting from "nothing varies", the walk is repeated until nothing changes, so loops come out right.
 
-use crate::ir::op::Routine;
+use crate::ir::op::Reach;
 use crate::ir::program::*;
 
 struct Walk {
@@ -122,7 +122,7 @@ impl Walk {
                 varies |= in_mask;
             }
             Instr::ArrayGet { array, .. } => varies |= self.varying_arrays[array.0 as usize],
-            Instr::Call { routine, .. } => varies |= matches!(routine, Routine::RayType),
+            Instr::Call { routine, .. } => varies |= routine.declaration().reach == Reach::Lane,
             _ => {}
         }
         if varies {

@@ -3,8 +3,8 @@
 use super::Lower;
 use super::value::Value;
 use crate::check::typed::{Argument, Expr};
-use crate::ir::op::{Binary, IntBinary, Noise, NoiseKind, PrintTo, Routine, TextArg, TextFormat, Unary};
-use crate::ir::program::{Kind, Node, Reg};
+use crate::ir::op::{Binary, IntBinary, Noise, NoiseKind, PrintTo, Routine, Smooth, TextArg, TextFormat, Unary};
+use crate::ir::program::{Node, Reg};
 use crate::lang::symbols::Symbol;
 use crate::lang::types::Base;
 
@@ -43,7 +43,7 @@ impl Lower<'_> {
             src = (0..dims).map(|i| self.wrapped(src[i], src[dims + i])).collect();
             noise.periodic = false;
         }
-        self.b.call(Routine::Noise(noise), &vec![Kind::Float; noise.outputs as usize], src, self.span)
+        self.b.call(Routine::Noise(noise), src, self.span)
     }
 
     /// A coordinate brought into `0..period`; periods are whole numbers from 1 on.
@@ -77,7 +77,7 @@ impl Lower<'_> {
         let Some((&kind, others)) = kinds.split_first() else {
             let text = "there is no noise \"%s\"".to_owned();
             let format = TextFormat { text, args: vec![TextArg::Strings(1)] };
-            self.b.call(Routine::Print(PrintTo::Error, format), &[], vec![name], self.span);
+            self.b.call(Routine::Print(PrintTo::Error, format), vec![name], self.span);
             return;
         };
         if noise.periodic && !kind.repeats() {
@@ -107,9 +107,7 @@ impl Lower<'_> {
             let (zero, one) = (self.b.float(0.0), self.b.float(1.0));
             return ((0..16).map(|i| if i % 5 == 0 { one } else { zero }).collect(), self.b.int(1));
         }
-        let mut kinds = vec![Kind::Float; 16];
-        kinds.push(Kind::Int);
-        let mut results = self.b.call(Routine::SpaceMatrix, &kinds, vec![from, to], self.span);
+        let mut results = self.b.call(Routine::SpaceMatrix, vec![from, to], self.span);
         let found = results.pop().unwrap_or(from);
         (results, found)
     }
@@ -156,7 +154,7 @@ impl Lower<'_> {
         match base {
             Base::Color => {
                 let src = [space, to].into_iter().chain(regs).collect();
-                self.b.call(Routine::TransformColor, &[Kind::Float; 3], src, self.span)
+                self.b.call(Routine::Smooth(Smooth::TransformColor), src, self.span)
             }
             Base::Matrix => {
                 if regs.len() == 1 {

@@ -4,6 +4,7 @@
 //! whatever they are computed from. A second walk writes, after each instruction that computes such a register, the
 //! instructions for its two derivatives. What has no derivative (ints, strings, constants, steps) counts as zero.
 
+mod calls;
 mod rules;
 
 use crate::ir::op::*;
@@ -83,7 +84,11 @@ impl Needs {
             return;
         }
         match instr {
-            Instr::Unary(op, _, a) if !is_step(*op) => self.mark(*a),
+            Instr::Unary(op, _, a) => {
+                if !is_step(*op) {
+                    self.mark(*a);
+                }
+            }
             Instr::Binary(Binary::Step, ..) => {}
             Instr::Binary(_, _, a, b) | Instr::Select(_, _, a, b) => {
                 self.mark(*a);
@@ -95,20 +100,32 @@ impl Needs {
                 self.changed |= !*slot;
                 *slot = true;
             }
-            Instr::Call { routine: Routine::Noise(noise), src, .. } if has_slope(noise.kind) => {
+            Instr::Call { routine, src, .. } => self.call(routine, src),
+            // There are no pairs yet, and the others write no floats or floats that are steps.
+            Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) | Instr::Compare(..) => {}
+            Instr::Test(..) | Instr::IntUnary(..) | Instr::IntBinary(..) => {}
+            // A second derivative is zero, as OSL has it. Arrays are dealt with above.
+            Instr::Derivative(..) | Instr::ArraySet { .. } => {}
+            Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => {}
+            Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => {}
+        }
+    }
+
+    fn call(&mut self, routine: &Routine, src: &[Reg]) {
+        let Declaration { takes, slopes, .. } = routine.declaration();
+        match (slopes, routine) {
+            (Slopes::Rule(_), _) => floats(&takes, src).for_each(|reg| self.mark(reg)),
+            (Slopes::Gradient, Routine::Noise(noise)) => {
                 src[..noise.dims as usize].iter().for_each(|&reg| self.mark(reg));
             }
-            Instr::Call { routine: Routine::Spline | Routine::SplineInverse, src, .. } => self.mark(src[1]),
-            Instr::Call { routine: Routine::TransformColor, src, .. } => {
-                src[2..].iter().for_each(|&reg| self.mark(reg))
-            }
-            _ => {}
+            (Slopes::Gradient | Slopes::Given | Slopes::None, _) => {}
         }
     }
 }
 
-fn has_slope(kind: NoiseKind) -> bool {
-    !matches!(kind, NoiseKind::Cell | NoiseKind::Hash)
+/// The float registers of a list.
+fn floats<'r>(kinds: &'r Kinds, regs: &'r [Reg]) -> impl Iterator<Item = Reg> + 'r {
+    each(kinds).zip(regs).filter(|(kind, _)| *kind == Kind::Float).map(|(_, &reg)| reg)
 }
 
 fn is_step(op: Unary) -> bool {
@@ -256,41 +273,12 @@ impl Writer<'_> {
             }
             Instr::Move { dst, src, .. } => self.move_slope(instr, dst, src),
             Instr::ArrayGet { .. } | Instr::ArraySet { .. } => self.array_slope(instr),
-            Instr::Call { routine: Routine::Noise(noise), dst, src, span } if has_slope(noise.kind) => {
-                self.noise_slope(noise, dst, src, span);
-            }
-            Instr::Call { routine: Routine::Spline | Routine::SplineInverse, ref dst, ref src, .. } => {
-                let (value, slope_of_x, x) = (dst[0], dst[1], src[1]);
-                self.emit(instr);
-                let slope = self.slope(x).map(|slope| self.mul(slope, slope_of_x));
-                self.slopes.insert(value, slope);
-            }
-            Instr::Call { routine: Routine::TransformColor, ref dst, ref src, span } => {
-                let (values, src) = (dst.clone(), src.clone());
-                self.emit(instr);
-                self.color_slope(&values, &src, span);
-            }
-            other => self.emit(other),
-        }
-    }
-
-    fn color_slope(&mut self, values: &[Reg], src: &[Reg], span: velour_grammar::Span) {
-        let from: Vec<Slope> = src[2..].iter().map(|&reg| self.slope(reg)).collect();
-        let mut slopes = [[None; 2]; 3];
-        for axis in 0..2 {
-            if from.iter().all(|slope| slope[axis].is_none()) {
-                continue;
-            }
-            let moved: Vec<Reg> = from.iter().map(|slope| slope[axis].unwrap_or_else(|| self.zero())).collect();
-            let dst: Vec<Reg> = (0..3).map(|_| self.program.reg(Kind::Float, false)).collect();
-            for (slope, &reg) in slopes.iter_mut().zip(&dst) {
-                slope[axis] = Some(reg);
-            }
-            let src = src.iter().copied().chain(moved).collect();
-            self.emit(Instr::Call { routine: Routine::TransformColorSlope, dst, src, span });
-        }
-        for (&value, slope) in values.iter().zip(slopes) {
-            self.slopes.insert(value, slope);
+            Instr::Call { routine, dst, src, span } => self.call_slope(routine, dst, src, span),
+            // What has no slope is never asked for one; see `Needs::instr`.
+            Instr::Derivative(..) | Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => self.emit(instr),
+            Instr::Compare(..) | Instr::Test(..) | Instr::IntUnary(..) | Instr::IntBinary(..) => self.emit(instr),
+            Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => self.emit(instr),
+            Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => self.emit(instr),
         }
     }
 
@@ -374,27 +362,6 @@ impl Writer<'_> {
                 }
             }
             _ => {}
-        }
-    }
-
-    /// Asks the noise for its gradient as well and applies the chain rule.
-    fn noise_slope(&mut self, mut noise: Noise, mut dst: Vec<Reg>, src: Vec<Reg>, span: velour_grammar::Span) {
-        let (dims, outputs) = (noise.dims as usize, noise.outputs as usize);
-        noise.gradient = true;
-        let values = dst.clone();
-        dst.extend((0..dims * outputs).map(|_| self.program.reg(Kind::Float, false)));
-        let gradient = dst[outputs..].to_vec();
-        let inputs: Vec<Slope> = src[..dims].iter().map(|&reg| self.slope(reg)).collect();
-        self.emit(Instr::Call { routine: Routine::Noise(noise), dst, src, span });
-        for (o, value) in values.into_iter().enumerate() {
-            let mut slope = [None; 2];
-            for (axis, slot) in slope.iter_mut().enumerate() {
-                for d in 0..dims {
-                    let part = self.mul(inputs[d][axis], gradient[o * dims + d]);
-                    *slot = self.add(*slot, part);
-                }
-            }
-            self.slopes.insert(value, slope);
         }
     }
 }
