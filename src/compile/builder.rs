@@ -3,7 +3,7 @@
 use super::Shader;
 use super::error::{GroupError, GroupSubject};
 use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
-use crate::exec::{Group, Locate};
+use crate::exec::{Group, Locate, ReportPlace};
 use crate::ir::lower::value::SPANS_PER_LAYER;
 use crate::ir::lower::{Binding, Layer, LowerOptions, lower};
 use crate::lang::closures::ClosureTable;
@@ -148,7 +148,8 @@ impl GroupBuilder {
         }
         let program = optimize(lower(&self.layers, self.lower), self.optimize);
         let last = self.layers.last().map_or(String::new(), |layer| layer.name.clone());
-        Group::new(program, self.closures, locator(self.sources)).map_err(|error| GroupError {
+        let names = self.layers.iter().map(|layer| (layer.shader.name.clone(), layer.name.clone())).collect();
+        Group::new(program, self.closures, locator(self.sources, names)).map_err(|error| GroupError {
             message: format!("the shader cannot be run: {error}"),
             help: "this is a limit of the machine, or a mistake of the compiler that should be reported".to_owned(),
             subject: GroupSubject::Layer(last),
@@ -156,11 +157,13 @@ impl GroupBuilder {
     }
 }
 
-/// Turns a span of the group into `file:line:column`.
-fn locator(sources: Vec<Sources>) -> Locate {
+/// Finds the place of a span of the group, with the names of its shader and its layer.
+fn locator(sources: Vec<Sources>, names: Vec<(String, String)>) -> Locate {
     Arc::new(move |span: Span| {
-        let (layer, first) = (span.first / SPANS_PER_LAYER, span.first % SPANS_PER_LAYER);
-        let place = sources.get(layer as usize).and_then(|s| s.locate(Span { first, last: first }));
-        place.map_or("shader".to_owned(), |p| format!("{}:{}:{}", p.file, p.line, p.column))
+        let (layer, first) = ((span.first / SPANS_PER_LAYER) as usize, span.first % SPANS_PER_LAYER);
+        let (shader, layer_name) = names.get(layer).cloned().unwrap_or_default();
+        let place = sources.get(layer).and_then(|s| s.locate(Span { first, last: first }));
+        let (file, line, column) = place.map_or(("shader".to_owned(), 0, 0), |p| (p.file, p.line, p.column));
+        ReportPlace { shader, layer: layer_name, file, line, column }
     })
 }

@@ -1,6 +1,6 @@
 //! Array elements chosen at run time, one index a lane.
 
-use super::machine::Run;
+use super::run::Run;
 use crate::ir::program::*;
 use velour_grammar::Span;
 
@@ -13,19 +13,13 @@ impl Run<'_> {
             return wanted as usize;
         }
         if self.s.mask[lane] != 0 {
-            let place = (self.group.locate)(span);
             let message = match len.checked_sub(1) {
-                Some(last) => format!("{place}: error: index {wanted} is outside 0..{last}"),
-                None => format!("{place}: error: index {wanted} is outside an array without elements"),
+                Some(last) => format!("index {wanted} is outside 0..{last}"),
+                None => format!("index {wanted} is outside an array without elements"),
             };
-            self.report_once(lane, message);
+            self.report_once(lane, span, message);
         }
         (wanted.max(0) as usize).min(len.saturating_sub(1) as usize)
-    }
-
-    /// A lane that is here, to report what concerns all of them.
-    pub(super) fn first_active(&self) -> usize {
-        self.s.mask.iter().position(|&m| m != 0).unwrap_or(0)
     }
 
     pub(super) fn array_get(&mut self, dst: Reg, array: ArrayId, component: u32, index: Reg, span: Span) {

@@ -1,6 +1,6 @@
 //! Closures: building the tree of the batch.
 
-use super::machine::Run;
+use super::run::Run;
 use crate::closure::tree::{Floats, Ints, Node, NodeId, Param};
 use crate::ir::program::*;
 use crate::lang::closures::{ClosureId, ParamKind};

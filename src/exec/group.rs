@@ -1,5 +1,6 @@
 //! A compiled shader group: what a host makes once and shades with for ever.
 
+use super::report::ReportPlace;
 use crate::ir::op::{Input, Reach};
 use crate::ir::program::*;
 use crate::ir::verify::{VerifyError, verify};
@@ -12,8 +13,8 @@ use velour_grammar::Span;
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(1);
 
-/// Turns a span of the program into text for a message, such as `cloth.osl:3:5`.
-pub type Locate = Arc<dyn Fn(Span) -> String + Send + Sync>;
+/// Turns a span of the program into the place where it was written.
+pub type Locate = Arc<dyn Fn(Span) -> ReportPlace + Send + Sync>;
 
 /// A compiled, optimised shader group.
 #[derive(Clone)]
@@ -135,8 +136,8 @@ impl Group {
         rays || self.inputs.iter().any(|(_, input)| *input != Input::SurfaceArea)
     }
 
-    /// A place noted in a closure tree, as `file:line:column`.
-    pub fn place(&self, site: u32) -> String {
+    /// A place noted in a closure tree.
+    pub fn place(&self, site: u32) -> ReportPlace {
         (self.locate)(Span { first: site, last: site })
     }
 }

@@ -1,6 +1,6 @@
 //! The arguments of a routine in one lane.
 
-use super::machine::Run;
+use super::run::Run;
 use crate::ir::program::Reg;
 use crate::lang::symbols::Symbol;
 use crate::ops::matrix::Matrix;
@@ -27,7 +27,7 @@ impl<'r> Lane<'r> {
 
     /// A string.
     pub fn s(&self, at: usize) -> &'r str {
-        Symbol(self.i(at)).text()
+        self.run.tree.strings.text(Symbol(self.i(at)))
     }
 
     /// Three floats.

@@ -58,7 +58,7 @@ pub enum Routine {
     /// Does the ray have this type? Symbol to int.
     RayType,
     /// A named attribute: symbols of object and name to an int that is 1 when there is one, and the values.
-    Attribute(Attribute),
+    Attribute(AttributeQuery),
 }
 
 /// The functions that have derivatives by a rule of their own.
@@ -84,7 +84,7 @@ pub enum Smooth {
 
 /// An attribute as it is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Attribute {
+pub struct AttributeQuery {
     /// Its type.
     pub ty: AttributeType,
     /// True when the derivatives along x of all values follow them, then those along y; floats only.

@@ -203,7 +203,7 @@ pub fn another(choice: &mut Choice) -> Routine {
         7 => {
             let count = number(choice);
             let ty = [AttributeType::Ints(count), AttributeType::Floats(count), AttributeType::Strings(count)][choice.below(3)];
-            Routine::Attribute(Attribute { ty, slopes: choice.once_in(2) })
+            Routine::Attribute(AttributeQuery { ty, slopes: choice.once_in(2) })
         }
         8 => Routine::Format(format(choice)),
         9 => {

@@ -17,7 +17,6 @@ use super::surfaces::{NONE, Request, Seen, Surfaces};
 use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
 use crate::bsdf::fresnel::Term;
 use crate::lang::closures::{ClosureSpec, Model};
-use crate::lang::symbols::Symbol;
 use smallvec::{SmallVec, smallvec};
 
 /// A surface of a leaf, with the column of its coverage t when it lies on top of something.
@@ -114,8 +113,8 @@ impl Arguments<'_> {
         })
     }
 
-    fn text(&self, column: Ints, lane: usize) -> &'static str {
-        Symbol(self.tree.int(column, lane)).text()
+    fn text(&self, column: Ints, lane: usize) -> &str {
+        self.tree.text(column, lane)
     }
 }
 

@@ -310,7 +310,7 @@ impl Lower<'_> {
             Kind::String => AttributeType::Strings(count),
             _ => AttributeType::Ints(count),
         };
-        let results = self.b.call(Routine::Attribute(Attribute { ty, slopes: false }), inputs, self.span);
+        let results = self.b.call(Routine::Attribute(AttributeQuery { ty, slopes: false }), inputs, self.span);
         let new: Vec<Reg> =
             results[1..].iter().zip(&old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
         self.write_flat(out, &new);
