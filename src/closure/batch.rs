@@ -345,6 +345,10 @@ lanes! {
     }
 }
 
+/// The largest scale that Kelemen's rule may come to: it divides by what a layer lets through on the mean, once for each of any
+/// number of layers.
+const MOST_SCALE: f32 = 1e3;
+
 /// What [`layer_lanes`] reads.
 #[derive(Clone, Copy)]
 pub struct LayerColumns<'a> {
@@ -381,7 +385,7 @@ lanes! {
             Layering::Kelemen => {
                 for i in 0..n {
                     let alpha_i = (1.0 - t[i] * top_i[i]).max(0.0);
-                    out[i] = parent[i] * alpha_i * alpha_o[i] * inverse_mean[i];
+                    out[i] = (parent[i] * alpha_i * alpha_o[i] * inverse_mean[i]).min(MOST_SCALE);
                 }
             }
         }

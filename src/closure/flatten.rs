@@ -10,7 +10,7 @@ use super::lobes::{Dropped, Lobe, Lobes};
 use super::settings::Layering;
 use super::surfaces::{NONE, Seen, Surfaces};
 use super::tree::{Floats, Ints, Node, NodeId, Param, Tree};
-use super::weights::{Operand, Weight, Weights, finite_and_some, multiply, normalise_lanes, share_lanes};
+use super::weights::{Operand, Weight, Weights, multiply, normalise_lanes, share_lanes, usable, usable_and_some};
 use crate::lang::closures::{ClosureSpec, ClosureTable, Model};
 use crate::math::columns::Column3;
 use smallvec::SmallVec;
@@ -287,7 +287,7 @@ fn add_lobe(
         let out = &mut lobes.weights[start + component * n..start + (component + 1) * n];
         multiply(lobes.sweep.weights.operand(weight, component, n), factor, out);
     }
-    if made.gate == NONE && finite_and_some(&lobes.weights[start..]) {
+    if made.gate == NONE && usable_and_some(&lobes.weights[start..]) {
         // The common case: every weight is a number and the surface exists in every lane.
         lobes.lobes.push(Lobe { surface, layer });
         return true;
@@ -299,7 +299,7 @@ fn add_lobe(
         let w = at.map(|i| lobes.weights[i]);
         // Lanes that did not run this closure have weight zero before the tint; their parameters do not matter.
         let absent = (0..3).all(|c| lobes.sweep.weights.get(weight, c, lane, n) == 0.0) || gate == 0.0;
-        let broken = gate.is_nan() || w.iter().any(|v| !v.is_finite());
+        let broken = gate.is_nan() || w.iter().any(|&v| !usable(v));
         if broken && !absent {
             drop_lane(&mut lobes.dropped, name, lane);
         }
@@ -403,7 +403,7 @@ fn emit(lobes: &mut Lobes) {
             let through = if layer == NONE { 1.0 } else { lobes.layers.through_of(layer)[lane] };
             let tint = lobes.media.get(lobes.layers.medium(layer)).map_or([1.0; 3], |m| m.viewer_tint(lane).to_array());
             let [x, y, z] = std::array::from_fn(|c| lobes.sweep.weights.get(weight, c, lane, n) * through * tint[c]);
-            if !(x.is_finite() && y.is_finite() && z.is_finite()) {
+            if ![x, y, z].into_iter().all(usable) {
                 drop_lane(&mut lobes.dropped, (if hole { "holdout" } else { "emission" }, node), lane);
             } else if hole {
                 lobes.holdout[lane] += (x + y + z) / 3.0;

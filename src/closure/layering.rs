@@ -15,7 +15,7 @@ use super::media::Media;
 use super::settings::{Layering, SheenAlbedo};
 use super::store::Store;
 use super::surfaces::{NONE, Surface, Surfaces, Values};
-use super::weights::{Operand, multiply};
+use super::weights::{MOST_WEIGHT, Operand, multiply, usable};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD};
 use crate::bsdf::specular::{reflection, refraction};
 use crate::bsdf::{GAUSS, between};
@@ -291,7 +291,9 @@ impl Layers {
                 Step::Scale(weight, child) => {
                     let (weight, child) = (surfaces.column(weight), value(child));
                     for i in 0..n {
-                        here[i] = if weight[i] > 0.0 { weight[i] * child[i] } else { 0.0 };
+                        // What is too heavy scatters nothing, and takes nothing.
+                        let there = weight[i] > 0.0 && usable(weight[i]);
+                        here[i] = if there { weight[i] * child[i] } else { 0.0 };
                     }
                 }
                 Step::Add(a, b) => {
@@ -310,7 +312,8 @@ impl Layers {
                     let (a, b) = (value(a), value(b));
                     for i in 0..n {
                         let top = a[i].clamp(0.0, 1.0);
-                        here[i] = top + (1.0 - top) * b[i];
+                        // A top that takes everything takes it of any base, of a sum beyond all numbers as well.
+                        here[i] = top + (1.0 - top) * b[i].min(MOST_WEIGHT);
                     }
                 }
             }

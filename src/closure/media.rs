@@ -25,6 +25,9 @@ use crate::math::columns::Column3;
 use crate::math::elementary::exp;
 use glam::Vec3;
 
+/// The largest ratio of solid angles or cosines that coats in coats may come to, far beyond any that light passes.
+const MOST_RATIO: f32 = 1e8;
+
 /// One medium.
 #[derive(Debug, Default)]
 pub struct Medium {
@@ -139,8 +142,8 @@ impl Media {
             pass_facets(from, above, alpha.as_deref(), pass_i);
             if let Some(outer) = outer {
                 for lane in 0..wi.len() {
-                    density[lane] *= outer.density[lane];
-                    spread[lane] *= outer.spread[lane];
+                    density[lane] = (density[lane] * outer.density[lane]).min(MOST_RATIO);
+                    spread[lane] = (spread[lane] * outer.spread[lane]).min(MOST_RATIO);
                 }
             }
             for lane in (0..wi.len()).filter(|_| *colored) {

@@ -8,6 +8,10 @@ use super::store::Store;
 use super::tree::{Floats, Tree};
 use crate::lanes;
 
+/// The largest weight of a lobe or a light that counts; beyond it closures are dropped and reported, like weights that are no numbers.
+/// No light is so bright, and what lobes scatter times this, summed over as many lobes as there may be, stays a number.
+pub const MOST_WEIGHT: f32 = 1e18;
+
 /// A weight.
 #[derive(Clone, Copy, Debug)]
 pub enum Weight {
@@ -152,17 +156,23 @@ lanes! {
 }
 
 lanes! {
-    /// Is every one a finite number, and is any not zero?
-    pub fn finite_and_some(values: &[f32]) -> bool {
-        const EXPONENT: u32 = 0x7f80_0000;
+    /// Is every one a number of at most [`MOST_WEIGHT`], and is any not zero?
+    pub fn usable_and_some(values: &[f32]) -> bool {
+        const MOST: u32 = MOST_WEIGHT.to_bits();
         let (mut some, mut broken) = (0, 0);
         for value in values {
+            // Words of positive floats are in the order of the floats, with infinity and what is no number last.
             let magnitude = value.to_bits() & 0x7fff_ffff;
             some |= magnitude;
-            broken |= (magnitude >= EXPONENT) as u32;
+            broken |= (magnitude > MOST) as u32;
         }
         some != 0 && broken == 0
     }
+}
+
+/// Is it a number of at most [`MOST_WEIGHT`]?
+pub fn usable(weight: f32) -> bool {
+    weight.abs() <= MOST_WEIGHT
 }
 
 lanes! {
@@ -205,11 +215,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_finite_weights_that_are_not_all_zero_pass() {
-        let with = |last: f32| finite_and_some(&[0.0, -0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, last]);
-        assert!(with(1e-45) && with(-3.0) && with(f32::MAX));
+    fn only_weights_that_are_numbers_and_not_all_zero_pass() {
+        let with = |last: f32| usable_and_some(&[0.0, -0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, last]);
+        assert!(with(1e-45) && with(-3.0) && with(MOST_WEIGHT) && !with(f32::MAX) && !with(-1.001e18));
         assert!(!with(0.0) && !with(-0.0) && !with(f32::NAN) && !with(f32::INFINITY) && !with(-f32::INFINITY));
-        assert!(!finite_and_some(&[1.0, f32::NAN]) && !finite_and_some(&[]));
+        assert!(!usable_and_some(&[1.0, f32::NAN]) && !usable_and_some(&[]));
         assert!(all_finite(&[0.0, 1.0, -f32::MAX]) && !all_finite(&[0.0, f32::NAN]) && !all_finite(&[f32::INFINITY]));
     }
 

@@ -4,7 +4,7 @@ use super::report::ReportPlace;
 use crate::ir::op::{Input, Reach};
 use crate::ir::program::*;
 use crate::ir::verify::{VerifyError, verify};
-use crate::lang::closures::{ClosureTable, Model};
+use crate::lang::closures::{ClosureId, ClosureTable, Model};
 use crate::lang::globals::Global;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -27,6 +27,8 @@ pub struct Group {
     /// See [`Group::spent`].
     spent: Arc<Vec<bool>>,
     models: Arc<Vec<Model>>,
+    /// The closures that can occur.
+    closures: Arc<Vec<ClosureId>>,
 }
 
 impl std::fmt::Debug for Group {
@@ -43,13 +45,16 @@ impl Group {
     pub fn new(program: Program, table: Arc<ClosureTable>, locate: Locate) -> Result<Self, VerifyError> {
         verify(&program, &table)?;
         let mut read = vec![0u32; program.regs.len()];
-        let mut models = Vec::new();
+        let (mut models, mut closures) = (Vec::new(), Vec::new());
         visit_instrs(&program.body, &mut |instr| {
             instr.reads(|reg| read[reg.0 as usize] += 1);
             if let Instr::Leaf { closure, .. } = instr {
                 let model = table.get(*closure).model;
                 if !models.contains(&model) {
                     models.push(model);
+                }
+                if !closures.contains(closure) {
+                    closures.push(*closure);
                 }
             }
         });
@@ -75,6 +80,7 @@ impl Group {
             inputs,
             spent: Arc::new(spent),
             models: Arc::new(models),
+            closures: Arc::new(closures),
         })
     }
 
@@ -102,6 +108,11 @@ impl Group {
     /// The scattering models that can occur.
     pub fn models(&self) -> &[Model] {
         &self.models
+    }
+
+    /// Can a closure occur that nests others, so that what it lets through depends on the direction?
+    pub fn nests(&self) -> bool {
+        self.closures.iter().any(|&id| self.table.get(id).nests())
     }
 
     /// Does it read a shader global?

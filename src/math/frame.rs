@@ -34,7 +34,7 @@ impl Frame {
 
     /// A frame around a unit normal whose x axis lies as near as possible to `u`.
     ///
-    /// Source: Gram and Schmidt. Domain: any `u`. Gives: a right-handed frame.
+    /// Source: Gram and Schmidt, twice. Domain: any `u`. Gives: a right-handed frame, orthonormal to a few ulps.
     /// Degenerate cases: `u` zero, not finite or along the normal gives [`Frame::from_normal`].
     #[inline(always)]
     pub fn from_normal_and_tangent(n: Vec3, u: Vec3) -> Frame {
@@ -45,6 +45,9 @@ impl Frame {
         let length2 = along.dot(along);
         let usable = length2 > 1e-10 && length2 < 4.0;
         let tangent = along * (1.0 / length2.max(1e-10).sqrt());
+        // Along the normal the difference has lost digits, and the tangent leans; a second step sets it upright.
+        let upright = tangent - n * tangent.dot(n);
+        let tangent = upright * (1.0 / upright.dot(upright).max(1e-10).sqrt());
         let pick = |a: f32, b: f32| if usable { a } else { b };
         let tangent =
             Vec3::new(pick(tangent.x, any.tangent.x), pick(tangent.y, any.tangent.y), pick(tangent.z, any.tangent.z));
@@ -80,6 +83,21 @@ mod tests {
                 assert!((frame.tangent.cross(frame.bitangent) - n).length() < 1e-5);
                 assert!((frame.tangent.length() - 1.0).abs() < 1e-5);
             }
+        }
+    }
+
+    #[test]
+    fn tangents_close_to_the_normal_stand_upright() {
+        for i in 0..20_000 {
+            let angle = i as f32 * 2.399_963;
+            let z = 1.0 - (i as f32 + 0.5) / 10_000.0;
+            let s = (1.0 - z * z).max(0.0).sqrt();
+            let n = Vec3::new(s * angle.cos(), s * angle.sin(), z);
+            let n = n * (1.0 / n.dot(n).sqrt());
+            let off = 10f32.powf(-6.0 * (i % 100) as f32 / 100.0);
+            let frame = Frame::from_normal_and_tangent(n, n + Vec3::new(-0.3, 0.9, 0.4) * off);
+            let w = frame.to_world(Vec3::new(0.6, 0.0, 0.8));
+            assert!((w.length() - 1.0).abs() < 1e-6, "{n} {off}: {w} of length {}", w.length());
         }
     }
 

@@ -48,8 +48,7 @@ impl Needs {
 /// True when nothing that changes from point to point of one object reaches the group's result.
 pub fn same_all_over(group: &Group) -> bool {
     // What a layer lets through depends on the direction of view, though no shader reads it.
-    let layered = group.models().iter().any(|model| matches!(model, Model::Layer | Model::Sheen));
-    !layered && !group.varies_on_object()
+    !group.nests() && !group.varies_on_object()
 }
 
 /// What one material takes part in.

@@ -3,6 +3,7 @@
 mod albedo;
 mod boundaries;
 mod coat;
+mod extremes;
 mod fits;
 mod golden;
 mod hair;

@@ -3,6 +3,7 @@
 mod adaptive;
 mod cloth;
 mod determinism;
+mod emitters;
 mod exact;
 mod files;
 mod furnace;

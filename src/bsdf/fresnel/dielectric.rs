@@ -67,7 +67,9 @@ pub fn refracted(wo: Vec3, m: Vec3, eta: f32) -> Vec3 {
     let inverse = 1.0 / eta.max(1e-6);
     let cos_t2 = 1.0 - inverse * inverse * (1.0 - cos_o * cos_o).max(0.0);
     let wi = m * (inverse * cos_o - cos_t2.max(0.0).sqrt()) - wo * inverse;
-    let keep = if cos_t2 > 0.0 && eta > 0.0 { 1.0 } else { 0.0 };
+    // From a dense medium the difference of two long vectors is left, whose rounding errors are as long.
+    let unit = 1.0 / wi.dot(wi).max(1e-12).sqrt();
+    let keep = if cos_t2 > 0.0 && eta > 0.0 { unit } else { 0.0 };
     wi * keep
 }
 

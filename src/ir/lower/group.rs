@@ -97,12 +97,7 @@ impl Lower<'_> {
             let scope = self.b.scope();
             self.exit = Some(scope);
             self.frames.push(Frame { scope: Some(scope), result: None });
-            let vars: Vec<VarId> = effects.vars.iter().copied().collect();
-            // A global that is first written inside the body must exist before lanes part.
-            for &var in vars.iter().filter(|var| self.shader.variables[var.0 as usize].global.is_some()) {
-                self.variable(var);
-            }
-            self.region(vars, |l| {
+            self.region(effects.vars.into_iter().collect(), |l| {
                 l.b.open();
                 l.stmts(&l.shader.body);
                 let block = l.b.close();

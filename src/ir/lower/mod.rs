@@ -66,8 +66,14 @@ struct Lower<'a> {
 
 impl Lower<'_> {
     /// Gives every variable in the list mutable registers, then runs `body` one region deeper.
+    ///
+    /// A global comes to life here at the latest: bound only inside, it would stand for the registers of the input, which
+    /// an assignment would then write in place, behind the back of all who take an input for constant.
     fn region<T>(&mut self, vars: Vec<VarId>, body: impl FnOnce(&mut Self) -> T) -> T {
         for var in vars {
+            if self.shader.variables[var.0 as usize].global.is_some() {
+                self.variable(var);
+            }
             if let Some(mut bound) = self.vars[var.0 as usize].take() {
                 self.make_mutable(&mut bound.value);
                 self.vars[var.0 as usize] = Some(bound);

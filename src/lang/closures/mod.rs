@@ -161,6 +161,11 @@ pub struct ClosureSpec {
 }
 
 impl ClosureSpec {
+    /// Does it lay something over closures, or take them up in another way? It does when it has a closure parameter.
+    pub fn nests(&self) -> bool {
+        self.params.iter().any(|param| param.kind == ParamKind::Closure)
+    }
+
     /// The same closure without some promises.
     fn without(mut self, waivers: &'static [Waiver]) -> Self {
         self.waivers = waivers;

@@ -1,0 +1,300 @@
+//! The house rules, read off the sources: arrows between rooms, first lines, names, sizes, and what is banned.
+
+mod bodies;
+mod circles;
+mod modules;
+mod source;
+
+use circles::circles;
+use modules::Modules;
+use source::{Source, Token, sources};
+
+/// The rooms from the ground up; a room uses itself and the ones before it.
+const ROOMS: &[&str] = &[
+    "lang", "math", "ops", "check", "ir", "optimize", "bsdf", "closure", "exec", "compile", "scene", "render",
+    "measure", "cli",
+];
+
+/// Arrows that the order does not have and that are meant: who, and which file of a later room it uses.
+const EXCEPTIONS: &[(&str, &str)] = &[];
+
+/// Files that may contain `unsafe`.
+const UNSAFE: &[&str] = &["render/accel/prefetch.rs", "math/instruction_set.rs"];
+
+/// Files that may print or end the process, besides the command line.
+const SPEAKERS: &[&str] = &["main.rs"];
+
+/// All folders of Rust, tests and benches included.
+const FOLDERS: [&str; 5] = ["src", "grammar/src", "tests", "grammar/tests", "benches"];
+
+/// Circles of files that stand today, each a room's: a list that only gets shorter.
+const CIRCLES: &[&[&str]] = &[
+    &["bsdf/fresnel/conductor.rs", "bsdf/fresnel/dielectric.rs", "bsdf/fresnel/mod.rs", "bsdf/fresnel/schlick.rs"],
+    &[
+        "bsdf/microfacet/albedo.rs",
+        "bsdf/microfacet/distribution.rs",
+        "bsdf/microfacet/ggx.rs",
+        "bsdf/microfacet/mod.rs",
+    ],
+    &["bsdf/sheen/albedo.rs", "bsdf/sheen/fits.rs", "bsdf/sheen/shadowing.rs"],
+    &["check/call.rs", "check/rank.rs"],
+    &["cli/chart.rs", "cli/check.rs", "cli/info.rs", "cli/mod.rs", "cli/render.rs", "cli/tree.rs", "cli/verify.rs"],
+    &[
+        "closure/curves.rs",
+        "closure/flatten.rs",
+        "closure/kinds.rs",
+        "closure/layering.rs",
+        "closure/leaves/cloth.rs",
+        "closure/leaves/coat.rs",
+        "closure/leaves/hair.rs",
+        "closure/leaves/historic.rs",
+        "closure/leaves/materialx.rs",
+        "closure/leaves/microfacet.rs",
+        "closure/leaves/mod.rs",
+        "closure/lobes.rs",
+        "closure/media.rs",
+        "closure/sampling.rs",
+        "closure/surfaces.rs",
+    ],
+    &["compile/builder.rs", "compile/mod.rs"],
+    &["ir/lower/mod.rs", "ir/lower/value.rs"],
+    &[
+        "lang/closures/boundaries.rs",
+        "lang/closures/classic.rs",
+        "lang/closures/cloth.rs",
+        "lang/closures/historic.rs",
+        "lang/closures/materialx.rs",
+        "lang/closures/mod.rs",
+    ],
+    &[
+        "measure/chart/albedo.rs",
+        "measure/chart/lambda.rs",
+        "measure/chart/layering.rs",
+        "measure/chart/mod.rs",
+        "measure/chart/precision.rs",
+        "measure/chart/sampling.rs",
+        "measure/chart/visibility.rs",
+        "measure/chart/widths.rs",
+    ],
+    &[
+        "measure/verify/finite.rs",
+        "measure/verify/laws.rs",
+        "measure/verify/mod.rs",
+        "measure/verify/reciprocity.rs",
+        "measure/verify/view.rs",
+    ],
+    &[
+        "render/accel/mod.rs",
+        "render/accel/tree.rs",
+        "render/accel/walk.rs",
+        "render/few.rs",
+        "render/film.rs",
+        "render/host.rs",
+        "render/lanes.rs",
+        "render/light.rs",
+        "render/plan.rs",
+        "render/settings.rs",
+        "render/shadow.rs",
+        "render/surface.rs",
+        "render/tile.rs",
+        "render/wave.rs",
+        "render/world.rs",
+    ],
+    &["scene/build.rs", "scene/load.rs"],
+    &["preprocessor/macros.rs", "preprocessor/mod.rs"],
+    &["print/expression.rs", "print/mod.rs"],
+];
+
+/// Functions that are longer than a screen today: a list that only gets shorter.
+const LONG: &[(&str, &str)] = &[("lang/closures/boundaries.rs", "specs"), ("render/accel/walk.rs", "walk")];
+
+/// Enums that will grow: a match of one names every variant, so that a new one is thought about wherever it matters.
+/// The others (types, operators' operands, nodes of syntax) are matched for the few cases that a rule is about, and a
+/// new variant falls under "all else is no such case".
+const GROWING: &[&str] = &[
+    "Attribute",
+    "Binary",
+    "Check",
+    "Global",
+    "Instr",
+    "InstructionSet",
+    "Layering",
+    "ParamKind",
+    "ParamType",
+    "Promise",
+    "Report",
+    "Routine",
+    "Shadowing",
+    "Shape",
+    "SheenAlbedo",
+    "SheenSampling",
+    "Sky",
+    "Stmt",
+    "Unary",
+    "Usage",
+];
+
+/// Matches of growing enums that are open today, a count a file: a list that only gets shorter.
+const OPEN: &[(&str, &str, usize)] = &[
+    ("bsdf/sheen/fits.rs", "Shadowing", 1),
+    ("exec/closures.rs", "ParamKind", 1),
+    ("exec/points.rs", "Global", 1),
+    ("exec/routines.rs", "Attribute", 1),
+    ("exec/routines.rs", "Routine", 3),
+    ("ir/build.rs", "Binary", 1),
+    ("ir/lower/statement.rs", "Stmt", 1),
+    ("ir/verify.rs", "Instr", 1),
+    ("math/instruction_set.rs", "InstructionSet", 1),
+    ("measure/verify/closure.rs", "ParamKind", 3),
+    ("measure/verify/laws.rs", "Promise", 1),
+    ("measure/verify/mod.rs", "Check", 1),
+    ("measure/verify/reciprocity.rs", "Promise", 1),
+    ("optimize/derive/mod.rs", "Binary", 1),
+    ("optimize/derive/mod.rs", "Global", 1),
+    ("optimize/derive/mod.rs", "Instr", 2),
+    ("optimize/derive/mod.rs", "Routine", 1),
+    ("optimize/derive/rules.rs", "Binary", 2),
+    ("optimize/derive/rules.rs", "Unary", 1),
+    ("optimize/uniform.rs", "Instr", 1),
+    ("render/accel/shape.rs", "Shape", 1),
+    ("render/shadow.rs", "Sky", 1),
+    ("scene/build.rs", "Usage", 1),
+    ("scene/spec.rs", "ParamType", 1),
+];
+
+/// The room of a file of `src`.
+fn room(path: &str) -> Option<usize> {
+    let first = path.split('/').next()?.trim_end_matches(".rs");
+    ROOMS.iter().position(|room| *room == first)
+}
+
+/// Files that use a later room.
+fn arrows_back(sources: &[Source]) -> Vec<String> {
+    let modules = Modules::new(sources);
+    let mut wrong = Vec::new();
+    for from in 0..modules.len() {
+        let Some(own) = room(modules.name(from)) else { continue };
+        for (to, path) in modules.used(from) {
+            let Some(other) = room(modules.name(to)) else { continue };
+            if other > own && !EXCEPTIONS.contains(&(ROOMS[own], ROOMS[other])) {
+                wrong.push(format!("src/{} uses {path} of {}", modules.name(from), ROOMS[other]));
+            }
+        }
+    }
+    wrong
+}
+
+#[test]
+fn rooms_use_only_earlier_rooms() {
+    let wrong = arrows_back(&sources("src"));
+    assert!(wrong.is_empty(), "a room uses a later one:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_files_of_a_room_use_each_other_in_a_circle() {
+    let mut wrong = String::new();
+    for folder in ["src", "grammar/src"] {
+        for circle in circles(&Modules::new(&sources(folder))) {
+            if CIRCLES.iter().any(|known| circle.files.iter().all(|file| known.contains(&file.as_str()))) {
+                continue;
+            }
+            wrong += &format!("{folder}: {} files use each other: {}\n", circle.files.len(), circle.files.join(", "));
+            for (file, path) in circle.way {
+                wrong += &format!("  {file} uses {path}\n");
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{wrong}");
+}
+
+#[test]
+fn every_file_opens_with_a_sentence() {
+    for folder in FOLDERS {
+        for Source { path, text, .. } in sources(folder) {
+            let first = text.lines().next().unwrap_or("");
+            assert!(first.starts_with("//! ") && first.len() > 8, "{folder}/{path} opens with {first:?}");
+        }
+    }
+}
+
+#[test]
+fn no_file_is_a_drawer() {
+    for folder in FOLDERS {
+        for Source { path, text, .. } in sources(folder) {
+            let name = path.rsplit('/').next().unwrap().trim_end_matches(".rs");
+            let drawer = ["util", "utils", "helper", "helpers", "common", "misc"].contains(&name);
+            assert!(!drawer, "{folder}/{path}: name a file after what is in it");
+            let lines = text.lines().count();
+            assert!(lines <= 500, "{folder}/{path} has {lines} lines, 500 are the most");
+        }
+    }
+}
+
+#[test]
+fn a_function_fits_on_a_screen() {
+    let mut wrong = Vec::new();
+    for folder in FOLDERS {
+        for source in sources(folder) {
+            // The tests of a file count as well.
+            for (name, line, lines) in bodies::functions(&source::tokens(&source.text)) {
+                if lines > 80 && !LONG.contains(&(source.path.as_str(), name.as_str())) {
+                    wrong.push(format!("{folder}/{}:{line}: {name} has {lines} lines, 80 are the most", source.path));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_match_of_a_growing_enum_names_every_variant() {
+    let sources = sources("src");
+    let growing = GROWING.iter().map(|name| (*name).to_owned()).collect();
+    let mut wrong = Vec::new();
+    for source in &sources {
+        let found = bodies::open_matches(&source.tokens, &growing);
+        for name in GROWING {
+            let lines = found.iter().filter(|(_, named)| named.contains(*name)).map(|(line, _)| line.to_string());
+            let lines: Vec<String> = lines.collect();
+            let known = OPEN.iter().find(|(path, known, _)| *path == source.path && known == name);
+            if lines.len() > known.map_or(0, |(.., count)| *count) {
+                wrong.push(format!("src/{}: `_ =>` in a match of {name}, lines {}", source.path, lines.join(", ")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn nothing_is_unsafe() {
+    for source in sources("src") {
+        let found = source.tokens.iter().any(|token| token.is("unsafe"));
+        assert!(!found || UNSAFE.contains(&source.path.as_str()), "src/{} says unsafe", source.path);
+    }
+}
+
+/// What a file says that only the command line may.
+fn speaks(tokens: &[Token]) -> bool {
+    let says = |words: &[&str]| tokens.windows(words.len()).any(|w| w.iter().zip(words).all(|(t, word)| t.is(word)));
+    ["println", "print", "eprintln", "eprint", "dbg"].iter().any(|name| says(&[name, "!"]))
+        || says(&["process", "::", "exit"])
+}
+
+#[test]
+fn only_the_command_line_speaks() {
+    for source in sources("src") {
+        let may = source.path.starts_with("cli/") || source.is_test() || SPEAKERS.contains(&source.path.as_str());
+        assert!(may || !speaks(&source.tokens), "src/{} prints or exits", source.path);
+    }
+}
+
+#[test]
+fn the_rules_catch_what_they_should() {
+    assert_eq!(room("ir/lower/mod.rs"), Some(4));
+    let files = |text| [Source::new("ops/a.rs", text), Source::new("exec/mod.rs", "pub struct Group;")];
+    let up = arrows_back(&files("use crate::{lang::types, exec::Group};"));
+    assert_eq!(up, ["src/ops/a.rs uses crate::exec::Group of exec"]);
+    assert_eq!(arrows_back(&files("// crate::exec::Group")), [""; 0]);
+    assert!(speaks(&source::tokens("fn f() { eprintln!(\"a\") }")) && speaks(&source::tokens("std::process::exit(1)")));
+    assert!(!speaks(&source::tokens("fn f() { write!(f, \"println!\"); print(1) }")));
+}
