@@ -1,8 +1,7 @@
 //! Derivatives of every builtin that has one, against differences of the values.
 
 use velour::compile::Compiler;
-use velour::exec::{Group, Machine, Points};
-use velour::ir::program::OutputValue;
+use velour::exec::{Group, Machine, Points, Values};
 use velour::lang::builtins;
 
 /// How far the points on both sides lie from the middle one.
@@ -31,9 +30,10 @@ fn line(ts: &[f32]) -> Points {
 
 /// The floats of an output in one lane.
 fn output(machine: &Machine, group: &Group, name: &str, lane: usize) -> Vec<f32> {
-    let output = group.program().outputs.iter().find(|output| output.name == name).unwrap();
-    let OutputValue::Regs(regs) = &output.value else { panic!("{name} is an array") };
-    regs.iter().map(|&reg| machine.float(group, reg, lane)).collect()
+    match machine.output(group, name).unwrap().lane(lane) {
+        Values::Floats(values) => values,
+        other => panic!("{name} is {other:?}"),
+    }
 }
 
 /// Compares the derivatives of a value of a type with its differences, and says whether they are not all zero.

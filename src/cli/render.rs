@@ -3,7 +3,7 @@
 use super::{CompileArgs, Failure, say, tell};
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
-use crate::exec::Report;
+use crate::exec::{Report, ReportKind};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::{Explanation, Image, Progress, Settings, output, render};
 use crate::scene::{Scene, SceneError, ShaderFiles};
@@ -189,10 +189,12 @@ fn chosen(args: &RenderArgs, tolerance: f64, closure: closure::Settings) -> clos
 /// Passes on what shaders said.
 fn pass_on(reports: &[Report]) {
     for report in reports {
-        match report {
-            Report::Output(text) => say(text),
-            Report::File(name, text) => tell(&format!("{name}: {text}")),
-            Report::Warning(text) | Report::Error(text) | Report::Fatal(text) => tell(&format!("{text}\n")),
+        match &report.kind {
+            ReportKind::Output => say(&report.text),
+            ReportKind::File(_) => tell(&report.to_string()),
+            ReportKind::Warning | ReportKind::Error | ReportKind::Mistake | ReportKind::Fatal => {
+                tell(&format!("{report}\n"));
+            }
         }
     }
 }

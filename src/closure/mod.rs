@@ -10,6 +10,7 @@ pub mod lobes;
 mod media;
 mod normals;
 pub mod print;
+pub mod reading;
 mod sampling;
 pub mod settings;
 mod store;

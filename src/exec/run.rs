@@ -42,8 +42,6 @@ pub(super) struct Scratch {
     pub int_columns: Vec<Vec<i32>>,
     /// The names that the host is asked about.
     pub names: [String; 2],
-    /// The text that is being made.
-    pub text: String,
 }
 
 /// One batch under way.

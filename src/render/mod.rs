@@ -54,7 +54,7 @@ pub use progress::{Progress, Silent};
 pub use settings::{LightStrategy, Settings};
 pub use world::World;
 
-use crate::exec::Report;
+use crate::exec::{Report, ReportPlace};
 use crate::scene::Scene;
 use film::{Film, Sums};
 use rounds::{Rounds, Task};
@@ -90,13 +90,13 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
         rays: 0,
         reports: world.reports.clone(),
     });
-    let failed = AtomicBool::new(world.reports.iter().any(|report| matches!(report, Report::Fatal(_))));
+    let failed = AtomicBool::new(world.reports.iter().any(|report| report.is_fatal()));
     let start = Instant::now();
     trace(&world, &pool, &shared, &failed, progress)?;
     let shared = shared.into_inner().map_err(|_| "a thread has failed".to_owned())?;
     let about = about(&world, shared.rounds, shared.rays, [seconds_preparing, start.elapsed().as_secs_f64()]);
-    if let Some(Report::Fatal(message)) = shared.reports.iter().find(|report| matches!(report, Report::Fatal(_))) {
-        return Err(message.clone());
+    if let Some(fatal) = shared.reports.iter().find(|report| report.is_fatal()) {
+        return Err(fatal.to_string());
     }
     let about = About { reports: reports(scene, shared.reports, &shared.dropped), ..about };
     let channels = if settings.alpha { 4 } else { 3 };
@@ -181,15 +181,14 @@ fn about(world: &World, rounds: Rounds, rays: u64, [seconds_preparing, seconds_t
 /// Differs from OSL: what shaders print while rendering comes out sorted and each text once, since lanes, tiles and
 /// threads have no order of their own. `velour tree` prints as written.
 fn reports(scene: &Scene, mut reports: Vec<Report>, dropped: &Dropped) -> Vec<Report> {
-    reports.sort_by_key(|report| format!("{report:?}"));
-    reports.dedup();
+    reports.sort_by_key(Report::key);
+    reports.dedup_by_key(|report| report.key());
     if dropped.count > 0 {
         let material = dropped.material.checked_sub(1).and_then(|m| scene.materials.get(m));
-        let (place, name) = material.map_or((String::new(), "?"), |m| (format!("{}: ", m.place), m.name.as_str()));
-        reports.push(Report::Error(format!(
-            "{place}error: shader group `{name}` gave light that is not a finite number; {} contributions were dropped",
-            dropped.count
-        )));
+        let (file, name) = material.map_or((String::new(), "?"), |m| (m.place.to_string(), m.name.as_str()));
+        let what = "gave light that is not a finite number";
+        let text = format!("shader group `{name}` {what}; {} contributions were dropped", dropped.count);
+        reports.push(Report::mistake(ReportPlace { file, ..ReportPlace::default() }, text));
     }
     reports
 }

@@ -43,7 +43,7 @@ pub struct World<'s> {
     /// The lights.
     pub lights: Lights,
     /// What shaders may ask.
-    pub host: Arc<Host>,
+    pub host: Arc<dyn Host>,
     /// The background.
     pub sky: Sky,
     /// The radiance of each object, where it is one constant; zero for objects that do not emit.
@@ -56,7 +56,7 @@ impl<'s> World<'s> {
     /// Prepares `scene`; runs shaders where emission has to be known beforehand.
     pub fn new(scene: &'s Scene, settings: &'s Settings) -> Self {
         let plan = Plan::new(scene, settings);
-        let host = Arc::new(super::host::host(&scene.camera, settings));
+        let host: Arc<dyn Host> = Arc::new(super::host::host(&scene.camera, settings));
         let mut shading = Shading::new(settings.closure, host.clone());
         let first_of_object = first_primitives(scene);
         let emission = |(object, first): (usize, &u32)| constant_emission(scene, &plan, &mut shading, object, *first);
@@ -204,7 +204,7 @@ pub fn fill_sky(shading: &mut Shading, lane: usize, direction: Vec3, ray_type: i
     }
 }
 
-fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading, host: &Arc<Host>) -> Sky {
+fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading, host: &Arc<dyn Host>) -> Sky {
     let Some(background) = scene.background else { return Sky::Constant(Vec3::ZERO) };
     let material = background.material as usize;
     let group = &scene.materials[material].surface;
@@ -221,7 +221,7 @@ fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading, h
 }
 
 /// The brightest channel of the background at the centre of each cell of its table.
-fn sky_brightness(group: &Group, side: usize, settings: &Settings, host: &Arc<Host>) -> Vec<f32> {
+fn sky_brightness(group: &Group, side: usize, settings: &Settings, host: &Arc<dyn Host>) -> Vec<f32> {
     let mut brightness = vec![0.0; side * side];
     brightness.par_chunks_mut(side).enumerate().for_each_init(
         || Shading::new(settings.closure, host.clone()),

@@ -51,7 +51,7 @@ fn points(lanes: usize) -> Points {
 }
 
 fn group(program: Program, table: &Arc<ClosureTable>) -> Result<Group, velour::ir::verify::VerifyError> {
-    Group::new(program, table.clone(), Arc::new(|_| "here".to_owned()))
+    Group::new(program, table.clone(), Arc::new(|_| velour::exec::ReportPlace::default()))
 }
 
 /// Runs a group over two batches and reads everything back.

@@ -59,7 +59,8 @@ impl Maker<'_> {
         self.add(Kind::Closure, Source::Const(Const::NoClosure), true);
         for _ in 0..4 {
             let global = GLOBALS[self.choice.below(GLOBALS.len() - 1)].1;
-            let component = self.choice.below(if self.choice.once_in(40) { 4 } else { 1 }) as u8;
+            let most = if self.choice.once_in(40) { 4 } else { 1 };
+            let component = self.choice.below(most) as u8;
             self.add(Kind::Float, Source::Input(Input::Global(global, component)), false);
         }
         self.add(Kind::Int, Source::Input(Input::Backfacing), false);
