@@ -21,8 +21,23 @@ fn built_and_shaded(shader: &Shader, machine: &mut Machine, number: u32) {
     machine.shade(&group, &Points::new(512));
 }
 
+/// Runs one test of this file in a process of its own, where no other test uses memory.
+fn alone(name: &str) -> bool {
+    const ALONE: &str = "VELOUR_TEST_ALONE";
+    if std::env::var_os(ALONE).is_some() {
+        return true;
+    }
+    let this = std::env::current_exe().unwrap();
+    let ran = std::process::Command::new(this).args(["--exact", name, "--test-threads=1"]).env(ALONE, "1").output().unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stdout));
+    false
+}
+
 #[test]
 fn dropped_groups_leave_nothing() {
+    if !alone("dropped_groups_leave_nothing") {
+        return;
+    }
     let text = "surface s(float k = 0) { float a[4] = {u, v, k, k * u}; Ci = a[(int)(u * 4)] * sheen(diffuse(N), N, color(v), k * u + noise(P)); }";
     let shader = shader(text);
     let mut machine = Machine::new();

@@ -33,7 +33,7 @@ const TEXTS: &[&str] = &[
     "shader s(output string t = \"\") { t = u > 0.5 ? \"a\" : \"b\"; for (int i = 0; i < v * 4; ++i) t = concat(t, format(\"%d %g\", i, u)); printf(\"%s\", t); warning(\"%g\", v); }",
     "shader s(output float a = 0) { float x = u; float k[5] = {0, 1, u, 1, 2}; while (x < 3) { x += spline(\"linear\", x, k) + 0.3; if (x > 2 * v) break; } a = filterwidth(splineinverse(\"bspline\", x, k)); }",
     "surface s(string d = \"ggx\") { matrix m; int ok = getmatrix(\"common\", d, m); string r[3]; int n = split(format(\"%g,%g\", u, v), r, \",\"); float f = 0; getattribute(\"f\", f); Ci = microfacet(d, N, 0.1 * n + f, 1.5, 0) + raytype(\"camera\") * transparent(); }",
-    "surface s() { int p[4]; if (regex_search(u > .5 ? \"abc\" : \"xb\", p, \"b\")) Ci = p[0] * diffuse(N); Ci += layer(sheen_bsdf(N, color(u), .3), diffuse(N)); if (Ci == 0) Ci = holdout(); }",
+    "surface s() { int p[4]; if (regex_search(u > .5 ? \"abc\" : \"xb\", p, \"b\")) Ci = p[0] * diffuse(N); Ci += layer(sheen_bsdf(N, color(u), .3), diffuse(N)); if (!Ci) Ci = holdout(); }",
     "surface s() { color c = 0; for (int i = 0; i < 4; ++i) { if (u > v) { c[i] = i; continue; } c += blackbody(3000 * u) * 1e-6; } Ci = c * generalized_schlick_bsdf(N, vector(1, 0, 0), c, c, .1, .1, c, color(1), 5, \"ggx\"); }",
 ];
 
