@@ -12,6 +12,7 @@ use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::ray::RayHit;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use velour::render::accel::{Accel, Method, NOTHING, Ray};
 use velour::render::random;
@@ -67,7 +68,7 @@ fn main() {
 }
 
 /// A twill of `yarns` in both directions, 192 triangles a crossing, with folds.
-fn cloth(yarns: u32) -> Geometry {
+fn cloth(yarns: u32) -> Arc<Geometry> {
     let text = format!(
         r#"<World><ShaderGroup>shader any l1;</ShaderGroup>
         <Weave corner="-1,0,1" edge_x="2,0,0" edge_y="0,0,-2" warp="{yarns}" weft="{yarns}" segments="6" sides="8"

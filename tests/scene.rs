@@ -74,9 +74,6 @@ fn every_mistake_has_a_place_and_a_message() {
             r#"<Flakes low="0,0,0" high="1,1,1" size="1" count="9000000"/>"#,
             "s:2:50: error: `count` of <Flakes> is `9000000`: a whole number from 1 to 8000000 expected",
         ),
-        (r#"<Camera dir="0,0,0"/>"#, "s:2:1: error: the camera looks nowhere"),
-        (r#"<Camera dir="0,1,0"/>"#, "s:2:1: error: the camera's `up` is parallel"),
-        (r#"<Camera fov="180"/>"#, "s:2:14: error: `fov` of <Camera> is `180`"),
         (r#"<Option aa="4"/>"#, "s:2:13: error: `aa` of <Option> is `4`: `int N`"),
         (r#"<Background resolution="many"/>"#, "s:2:25: error: `resolution`"),
         ("  stray", "s:2:3: error: text in <World>, which holds only elements\n  help: remove it"),
@@ -104,6 +101,33 @@ fn every_mistake_has_a_place_and_a_message() {
         (r#"<ShaderGroup><Shader name="a"/></ShaderGroup>"#, "s:2:14: error: <Shader> needs the attribute `layer`"),
         ("<Sphere", "error: the scene is not well-formed XML"),
     ];
+    hold(&cases);
+}
+
+#[test]
+fn a_camera_that_makes_no_picture_is_refused() {
+    hold(&[
+        (r#"<Camera dir="0,0,0"/>"#, "s:2:1: error: the camera looks nowhere"),
+        (r#"<Camera dir="0,1,0"/>"#, "s:2:1: error: the camera's `up` is parallel"),
+        (r#"<Camera fov="180"/>"#, "s:2:14: error: `fov` of <Camera> is `180`"),
+        (
+            r#"<Camera fov="0"/>"#,
+            "s:2:14: error: `fov` of <Camera> is `0`: an angle between 0 and 180 degrees expected\n  help",
+        ),
+        (r#"<Camera fov="-40"/>"#, "s:2:14: error: `fov` of <Camera> is `-40`"),
+        (r#"<Camera fov="NaN"/>"#, "s:2:14: error: `fov` of <Camera> is `NaN`"),
+        (r#"<Camera fov="inf"/>"#, "s:2:14: error: `fov` of <Camera> is `inf`"),
+        (
+            r#"<Camera fov="2e-21"/>"#,
+            "s:2:14: error: the camera's `fov` is so small that all pixels look in one direction\n  help: give at least",
+        ),
+        (r#"<Camera eye="1e38,0,0" look_at="-3e38,0,0"/>"#, "s:2:1: error: the camera looks nowhere"),
+        (r#"<Camera up="0,0,0"/>"#, "s:2:1: error: the camera's `up` is parallel"),
+    ]);
+}
+
+/// Holds that each line gives its message.
+fn hold(cases: &[(&str, &str)]) {
     let wrong: Vec<String> = cases
         .iter()
         .map(|(line, expected)| (line, message(line), expected))

@@ -1,7 +1,8 @@
 //! `velour chart`: what each method costs on this machine, and how wrong it is.
 
-use super::render::failure;
-use super::{CompileArgs, Failure, say, tell};
+use super::compile::CompileArgs;
+use super::failure::Failure;
+use super::speak::{say, tell};
 use crate::measure::chart::{Budget, Effort, draw, figure::Figure, figures, scene_figure, table};
 use crate::scene::{Scene, ShaderFiles};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
@@ -33,7 +34,7 @@ pub fn run(args: &ChartArgs) -> Result<(), Failure> {
     let scene = match &args.scene {
         Some(scene) => {
             let compiler = ShaderFiles::new(args.compile.compiler()?);
-            Some(Scene::load(scene, &args.path, &compiler).map_err(failure)?)
+            Some(Scene::load(scene, &args.path, &compiler).map_err(Failure::of_scene)?)
         }
         None => None,
     };

@@ -1,8 +1,20 @@
 //! `velour check`: reports every mistake in shader files.
 
-use super::{CompileArgs, Failure, MessageFormat, colored, say, tell};
+use super::compile::CompileArgs;
+use super::failure::Failure;
+use super::speak::{colored, say, tell};
 use std::path::PathBuf;
 use velour_grammar::Format;
+
+/// How messages look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum MessageFormat {
+    /// One line a message: file:line:column: error: message
+    Short,
+    /// The text with the place marked
+    #[default]
+    Full,
+}
 
 /// Arguments of `velour check`.
 #[derive(clap::Args)]

@@ -1,7 +1,9 @@
 //! `velour info`: what the language offers, one closure or builtin of it, or what a shader file declares.
 
+use super::compile::CompileArgs;
+use super::failure::Failure;
 use super::info_file::shader_text;
-use super::{CompileArgs, Failure, say};
+use super::speak::say;
 use crate::compile::CompileError;
 use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
 use crate::lang::closures::{self, Claim, ClosureSpec, ClosureTable, ParamKind, ParamSpec, Waiver};

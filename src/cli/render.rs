@@ -1,12 +1,14 @@
 //! `velour render`: a scene in, an image out.
 
-use super::{CompileArgs, Failure, say, tell};
+use super::compile::CompileArgs;
+use super::failure::Failure;
+use super::speak::{say, tell};
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
-use crate::render::{Explanation, Image, Progress, Settings, output, render};
-use crate::scene::{Scene, SceneError, ShaderFiles};
+use crate::render::{Explanation, Image, Progress, Renderer, Settings, output};
+use crate::scene::{Scene, ShaderFiles};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -113,7 +115,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     let compiler = ShaderFiles::new(args.compile.compiler()?);
-    let scene = Scene::load(&args.scene, &args.path, &compiler).map_err(failure)?;
+    let scene = Scene::load(&args.scene, &args.path, &compiler).map_err(Failure::of_scene)?;
     for warning in &scene.warnings {
         tell(&format!("{warning}\n"));
     }
@@ -124,19 +126,15 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if args.explain {
         say(&Explanation::new(&scene, &settings).to_string());
     }
+    let mut renderer = Renderer::new(&scene, &settings).map_err(Failure::of_render)?;
     let bar = Bar::new();
-    let image = render(&scene, &settings, &bar).map_err(Failure::Wrong)?;
+    renderer.finish(&bar).map_err(Failure::of_render)?;
     bar.bar.finish_and_clear();
+    let image = renderer.picture();
     pass_on(&image.about.reports);
     output::write(&image, path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
     tell(&last_line(&image, path, start.elapsed().as_secs_f64()));
     Ok(())
-}
-
-/// A scene that cannot be loaded, as a status.
-pub(super) fn failure(error: SceneError) -> Failure {
-    // Without a place the scene file itself could not be read.
-    if error.place.is_none() { Failure::Usage(error.to_string()) } else { Failure::Wrong(error.to_string()) }
 }
 
 fn settings(args: &RenderArgs) -> Settings {

@@ -1,6 +1,8 @@
 //! `velour tree`: shows what a shader's `Ci` is, at one point, as a tree or as flattened lobes.
 
-use super::{CompileArgs, Failure, say, tell};
+use super::compile::CompileArgs;
+use super::failure::Failure;
+use super::speak::{say, tell};
 use crate::closure::print::tree_text;
 use crate::closure::settings::Shadowing;
 use crate::closure::{Layering, Lobes, Settings};

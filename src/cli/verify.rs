@@ -1,6 +1,8 @@
 //! `velour verify`: does a closure, or a user's shader, keep the laws that a material has to keep?
 
-use super::{CompileArgs, Failure, colored, say, tell};
+use super::compile::CompileArgs;
+use super::failure::Failure;
+use super::speak::{colored, say, tell};
 use crate::closure::settings::Shadowing;
 use crate::closure::{Layering, Settings};
 use crate::compile::{Compiler, Shader};

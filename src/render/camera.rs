@@ -60,14 +60,14 @@ impl RayCamera {
 }
 
 lanes! {
-    /// Directions through the points (`x` + `places`, `y` + `places`) of the image.
-    pub fn directions(camera: &RayCamera, x: f32, y: f32, places: [&[f32]; 2], out: &mut Column3) {
-        let [places_x, places_y] = places;
+    /// Directions through the points (`x`, `y`) + `inside` of the image, a lane each.
+    pub fn directions(camera: &RayCamera, x: f32, y: f32, inside: [&[f32]; 2], out: &mut Column3) {
+        let [inside_x, inside_y] = inside;
         let n = out.x.len();
-        let (places_x, places_y) = (&places_x[..n], &places_y[..n]);
+        let (inside_x, inside_y) = (&inside_x[..n], &inside_y[..n]);
         let (out_x, out_y, out_z) = (&mut out.x[..n], &mut out.y[..n], &mut out.z[..n]);
         for i in 0..n {
-            let direction = camera.direction(x + places_x[i], y + places_y[i]);
+            let direction = camera.direction(x + inside_x[i], y + inside_y[i]);
             (out_x[i], out_y[i], out_z[i]) = (direction.x, direction.y, direction.z);
         }
     }

@@ -4,16 +4,21 @@
 //! rendered depends on them. The time of a facet table is a recorded one, of a 2-core AMD EPYC, for making one takes
 //! longer than a reader wants to wait.
 
+use super::accel::NOTHING;
+use super::host::host;
+use super::lanes::Draws;
 use super::light::{LightLanes, Lights};
 use super::plan::{Needs, Plan};
+use super::points::{fill, fill_sky};
+use super::probe::probe;
+use super::segment::Segment;
 use super::settings::{LightStrategy, Settings};
 use super::shading::Shading;
-use super::surface::{RayHitPoint, fill};
-use super::world::{fill_sky, probe};
 use crate::closure::settings::SheenAlbedo;
 use crate::exec::{Group, MAX_LANES, Points};
 use crate::lang::closures::Model;
 use crate::lang::globals::GLOBALS;
+use crate::math::columns::Column3;
 use crate::scene::{Geometry, Primitive, Scene, Shape};
 use glam::Vec3;
 use std::fmt;
@@ -144,13 +149,13 @@ fn geometry_savings(scene: &Scene, plan: &Plan, savings: &mut Vec<Saving>) {
     if count == 0 {
         return;
     }
-    let hit = |lane: usize| {
+    let segment = |lane: usize| {
         let at = (lane as f32 + 0.5) / MAX_LANES as f32;
-        probe(scene, (lane * count / MAX_LANES) as u32, at, 1.0 - at)
+        probe(&scene.geometry, (lane * count / MAX_LANES) as u32, at, 1.0 - at)
     };
-    let hits: Vec<RayHitPoint> = (0..MAX_LANES).map(hit).collect();
+    let segments: Vec<Segment> = (0..MAX_LANES).map(segment).collect();
     let mut points = Points::new(MAX_LANES);
-    let mut cost = |needs: Needs| time(|| fill(black_box(&mut points), &scene.geometry, hits.iter(), &needs));
+    let mut cost = |needs: Needs| time(|| fill(black_box(&mut points), &scene.geometry, segments.iter(), &needs));
     let nothing = cost(Needs::default());
     let any = |read: &dyn Fn(&Needs) -> bool| plan.materials.iter().any(|m| read(&m.needs));
     let parts = [
@@ -199,23 +204,22 @@ fn light_cost() -> f64 {
     let primitive = Primitive { shape, object: 0, normals: Primitive::NONE, uvs: Primitive::NONE };
     let geometry = Geometry { primitives: vec![primitive], ..Geometry::default() };
     let lights = Lights::new(&geometry, &[(0, 1.0)]);
-    let mut lanes = super::lanes::Lanes::default();
-    lanes.resize(MAX_LANES);
-    lanes.primitives.fill(u32::MAX);
-    let mut out = LightLanes::default();
+    let (points, from) = (Column3::zeros(MAX_LANES), vec![NOTHING; MAX_LANES]);
+    let (mut draws, mut out) = (Draws::default(), LightLanes::default());
+    draws.resize(MAX_LANES);
     time(|| {
-        lanes.draw(1, 2);
-        lights.sample(&lanes.throughput, &lanes.primitives, &lanes.numbers, black_box(&mut out));
+        draws.draw(1, 2);
+        lights.sample(&points, &from, &draws.numbers, black_box(&mut out));
     })
 }
 
 /// Nanoseconds to shade one direction of the background, if there is one.
 fn background_cost(scene: &Scene, settings: &Settings) -> Option<f64> {
     let background = scene.background?;
-    let host = Arc::new(super::host::host(&scene.camera, settings));
+    let host = Arc::new(host(&scene.camera, settings));
     let mut shading = Shading::new(settings.closure, host);
     shading.resize(MAX_LANES);
-    (0..MAX_LANES).for_each(|lane| fill_sky(&mut shading, lane, Vec3::Y, 0));
+    (0..MAX_LANES).for_each(|lane| fill_sky(&mut shading.points, lane, Vec3::Y, 0));
     Some(time(|| shading.shade(&scene.materials[background.material as usize].surface)))
 }
 

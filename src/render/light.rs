@@ -1,7 +1,8 @@
 //! Area lights: which primitives emit, how one is chosen, and how a point on it is.
 
 use super::block::{Row, Row3, WIDTH, get, load, set, store};
-use super::surface::Form;
+use super::form::Form;
+use super::segment::Segment;
 use crate::lanes;
 use crate::math::columns::Column3;
 use crate::scene::{Geometry, Shape};
@@ -148,21 +149,22 @@ impl Lights {
 
     /// Density with which `sample` would have chosen the hit that a ray has made; 0 for what is no light.
     #[inline]
-    pub fn pdf(&self, geometry: &Geometry, hit: &super::surface::RayHitPoint, from: u32) -> f32 {
+    pub fn pdf(&self, geometry: &Geometry, segment: &Segment, from: u32) -> f32 {
+        let Segment { origin, direction, hit, .. } = *segment;
         let chance = match self.chance.get(hit.primitive as usize) {
             Some(chance) if *chance > 0.0 => *chance,
             _ => return 0.0,
         };
         let flat = |normal: Vec3, scale: f32| {
-            let cos_area = normal.dot(hit.direction).abs() * scale;
+            let cos_area = normal.dot(direction).abs() * scale;
             if cos_area > 0.0 { hit.t * hit.t / cos_area } else { 0.0 }
         };
         chance
             * match geometry.primitives[hit.primitive as usize].shape {
                 Shape::Sphere { center, radius } => {
-                    let to_center = center - hit.origin;
+                    let to_center = center - origin;
                     if hit.primitive == from || to_center.length_squared() < radius * radius {
-                        let n = (hit.origin + hit.t * hit.direction - center).normalize_or_zero();
+                        let n = (origin + hit.t * direction - center).normalize_or_zero();
                         flat(n, 4.0 * PI * radius * radius)
                     } else {
                         cone_pdf(radius * radius / to_center.length_squared())
@@ -336,19 +338,4 @@ fn square_to_triangle(x: f32, y: f32) -> (f32, f32) {
     let (near, far) = if above { (x, y) } else { (y, x) };
     let (half, rest) = (0.5 * near, far - 0.5 * near);
     if above { (half, rest) } else { (rest, half) }
-}
-
-/// The power heuristic: the weight of a sample of density `own` against a method that would give it `other`.
-#[inline(always)]
-pub fn power_heuristic(own: f32, other: f32) -> f32 {
-    // The ratio keeps infinite densities (one possible direction) and huge ones from overflowing.
-    if own > other {
-        let r = other / own;
-        1.0 / (1.0 + r * r)
-    } else if other > 0.0 {
-        let r = own / other;
-        r * r / (1.0 + r * r)
-    } else {
-        0.0
-    }
 }

@@ -1,6 +1,6 @@
 //! Rounds: how many samples which tiles take next, until the picture is good enough or the time is up.
 //!
-//! A render of a fixed number of samples is one round over all tiles. A render that stops by noise or time goes in
+//! A render of a fixed number of samples is one round over all tiles, unless whoever drives it asks for shorter ones. A render that stops by noise or time goes in
 //! rounds: 16 samples a pixel, 24, 32, 48 and so on, every prefix of which fills its strata well. After each round the
 //! two halves of the film give every tile's error.
 //!
@@ -39,7 +39,6 @@ pub struct Rounds {
     pixels: Vec<f64>,
     /// Tiles in a row of the picture.
     across: usize,
-    started: bool,
     /// The first round is over.
     looked: bool,
     deadline: Option<Instant>,
@@ -52,14 +51,13 @@ impl Rounds {
         let tiles = Tile::count(settings);
         let pixels = |number: usize| {
             let tile = Tile::number(settings, number);
-            f64::from(tile.width) * f64::from(tile.height)
+            f64::from(tile.pixels())
         };
         Rounds {
             taken: vec![0; tiles],
             errors: vec![f64::INFINITY; tiles],
             pixels: (0..tiles).map(pixels).collect(),
             across: settings.width.div_ceil(settings.tile_size) as usize,
-            started: false,
             looked: false,
             deadline,
         }
@@ -70,26 +68,38 @@ impl Rounds {
         self.looked && self.deadline.is_some_and(|d| Instant::now() >= d)
     }
 
-    /// The tasks of the next round; none when all is done.
-    pub fn next(&mut self, settings: &Settings, film: &Film) -> Vec<Task> {
-        if !settings.adapts() {
-            let all = |tile| Task { tile, first: 0, end: settings.samples };
-            return if std::mem::replace(&mut self.started, true) {
-                Vec::new()
-            } else {
-                (0..self.taken.len()).map(all).collect()
-            };
-        }
-        if std::mem::replace(&mut self.started, true) {
-            self.errors = film.errors(settings);
-            self.looked = true;
-        }
+    /// The tasks of the next round, of at most `most` samples a pixel; none when all is done.
+    pub fn next(&self, settings: &Settings, most: u32) -> Vec<Task> {
         if self.late() {
             return Vec::new();
         }
-        let limit = self.limit(settings);
-        let wanting = |tile: &usize| self.taken[*tile] < settings.samples && self.gain(settings, *tile) > limit;
-        (0..self.taken.len()).filter(wanting).map(|tile| self.task(settings, tile)).collect()
+        let most = most.max(1);
+        let fewest = self.taken.iter().copied().min().unwrap_or(0);
+        let task = |tile: usize| {
+            let Task { first, end, .. } = self.task(settings, tile);
+            // A round that was stopped has left tiles behind, which catch up when all are to have as many samples.
+            let start = if settings.adapts() { first } else { fewest };
+            Task { tile, first, end: end.min(start.saturating_add(most)) }
+        };
+        self.wanting(settings).map(task).filter(|task| task.end > task.first).collect()
+    }
+
+    /// Looks at what a round has brought; true says that something is left to do.
+    pub fn look(&mut self, settings: &Settings, film: &Film) -> bool {
+        if settings.adapts() {
+            self.errors = film.errors(settings);
+            self.looked = self.taken.iter().all(|samples| *samples > 0);
+        }
+        !self.late() && self.wanting(settings).next().is_some()
+    }
+
+    /// The tiles that are to have more samples.
+    fn wanting(&self, settings: &Settings) -> impl Iterator<Item = usize> {
+        let limit = if settings.adapts() { self.limit(settings) } else { 0.0 };
+        let wants = move |tile: &usize| {
+            self.taken[*tile] < settings.samples && (!settings.adapts() || self.gain(settings, *tile) > limit)
+        };
+        (0..self.taken.len()).filter(wants)
     }
 
     /// Notes that a task is done.
@@ -145,8 +155,12 @@ impl Rounds {
         if median.is_finite() { 0.999 * median } else { 0.0 }
     }
 
+    /// What a tile takes when nobody asks for less.
     fn task(&self, settings: &Settings, tile: usize) -> Task {
         let first = self.taken[tile];
+        if !settings.adapts() {
+            return Task { tile, first, end: settings.samples };
+        }
         let more = match first {
             0 => FIRST,
             n if n.is_power_of_two() => n / 2,
@@ -175,14 +189,23 @@ mod tests {
         assert_eq!(ends, [16, 24, 32, 48, 64, 96, 100]);
     }
 
+    #[test]
+    fn a_round_that_was_stopped_is_caught_up_with() {
+        let settings = Settings { samples: 20, width: 64, height: 16, ..Settings::default() };
+        let mut rounds = Rounds::new(&settings, Instant::now());
+        rounds.taken = vec![8, 8, 3, 20];
+        let ends = |most| rounds.next(&settings, most).iter().map(|t| (t.tile, t.first, t.end)).collect::<Vec<_>>();
+        assert_eq!(ends(5), [(2, 3, 8)]);
+        assert_eq!(ends(8), [(0, 8, 11), (1, 8, 11), (2, 3, 11)]);
+        assert_eq!(ends(u32::MAX), [(0, 8, 20), (1, 8, 20), (2, 3, 20)]);
+    }
+
     /// Four tiles in a row, with a time.
     fn four(samples: u32, taken: [u32; 4], errors: [f64; 4]) -> Vec<usize> {
         let settings = Settings { seconds: Some(1e6), samples, width: 64, height: 16, ..Settings::default() };
         let mut rounds = Rounds::new(&settings, Instant::now());
         (rounds.taken, rounds.errors) = (taken.to_vec(), errors.to_vec());
-        let limit = rounds.limit(&settings);
-        let goes_on = |t: &usize| rounds.taken[*t] < samples && rounds.gain(&settings, *t) > limit;
-        (0..4).filter(goes_on).collect()
+        rounds.wanting(&settings).collect()
     }
 
     #[test]

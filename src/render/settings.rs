@@ -1,7 +1,7 @@
 //! What a user can set about a render.
 
-use crate::closure;
 use crate::scene::Options;
+use crate::{closure, exec};
 
 /// How light reaches a surface point: the methods that may be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,6 +14,9 @@ pub enum LightStrategy {
     /// Light samples alone where a light can be sampled: noisy near lights and on shiny surfaces.
     LightsOnly,
 }
+
+/// Independent halves of a film's samples that an error can be estimated from.
+pub(super) const HALVES: usize = 2;
 
 /// The settings of one render.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +74,7 @@ impl Default for Settings {
             alpha: false,
             lights: LightStrategy::Combined,
             show_globals: 0,
-            batch_width: crate::exec::MAX_LANES,
+            batch_width: exec::MAX_LANES,
             tile_size: 16,
             wave_size: 8192,
             closure: closure::Settings::default(),
@@ -99,7 +102,12 @@ impl Settings {
 
     /// How many independent halves the samples are split into.
     pub(super) fn halves(&self) -> usize {
-        if self.adapts() { super::film::HALVES } else { 1 }
+        if self.adapts() { HALVES } else { 1 }
+    }
+
+    /// Lanes of a shading batch.
+    pub(super) fn lanes(&self) -> usize {
+        self.batch_width.clamp(1, exec::MAX_LANES)
     }
 
     /// Says what cannot be rendered, if anything.

@@ -7,24 +7,6 @@ use crate::math::columns::Column3;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Kinds of rays, as `raytype()` tests them.
-pub mod ray_type {
-    /// From the camera.
-    pub const CAMERA: i32 = 1;
-    /// Toward a light.
-    pub const SHADOW: i32 = 2;
-    /// After a diffuse bounce.
-    pub const DIFFUSE: i32 = 4;
-    /// After a glossy bounce.
-    pub const GLOSSY: i32 = 8;
-    /// After a mirror.
-    pub const REFLECTION: i32 = 16;
-    /// After a clear refraction.
-    pub const REFRACTION: i32 = 32;
-}
-
-pub use crate::closure::event;
-
 /// How many different reports a thread keeps: a shader that prints at every point would fill all memory.
 const MOST_REPORTS: usize = 1000;
 
@@ -135,6 +117,13 @@ impl Shading {
     /// Samples a direction a lane by `random`.
     pub fn sample(&mut self) {
         self.lobes.sample(&self.random, &mut self.samples);
+    }
+
+    /// Forgets what was said, so that it is said again, and whether a shader could be run.
+    pub fn start_over(&mut self) {
+        self.reports.clear();
+        self.told.clear();
+        self.failed = false;
     }
 
     /// What shaders printed and complained of since the last call.

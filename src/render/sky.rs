@@ -3,6 +3,20 @@
 use glam::Vec3;
 use std::f32::consts::PI;
 
+/// What rays see that hit nothing.
+#[derive(Clone, Debug)]
+pub enum Sky {
+    /// One radiance for all directions; zero when there is no background.
+    Constant(Vec3),
+    /// A shader, and a table when it is to be sampled.
+    Shader {
+        /// Index of the material.
+        material: usize,
+        /// The table.
+        table: Option<SkyTable>,
+    },
+}
+
 /// A table that samples directions by the brightness of the background.
 ///
 /// Cell (x, y) holds the directions with azimuth 2 pi (x..x+1)/n around z and z = 1 - 2 (y..y+1)/n, all cells of one

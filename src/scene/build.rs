@@ -1,17 +1,20 @@
 //! Builds a scene, one XML element after another; what each tag and attribute means is written here and nowhere else.
 
+use super::camera::{Camera, CameraFlaw};
 use super::error::{Place, SceneError};
 use super::flakes::Flakes;
 use super::geometry::{Geometry, Shape};
 use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
-use super::load::{Background, Camera, Material, Options, Scene, within};
 use super::mesh::{MaterialNames, add_mesh};
 use super::nearest::nearest;
+use super::scene::{Background, Material, Options, Scene};
+use super::source::within;
 use super::spec::{Statements, parse_group};
 use super::weave::Weave;
 use super::xml::Element;
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 const TAGS: [&str; 9] = ["Option", "Camera", "Sphere", "Quad", "Model", "Weave", "Flakes", "Background", "ShaderGroup"];
 const OPTIONS: [&str; 5] = ["max_bounces", "rr_depth", "aa", "no_jitter", "show_globals"];
@@ -23,6 +26,7 @@ const DEFAULT_BACKGROUND_RESOLUTION: u32 = 1024;
 /// A scene in the making.
 pub struct Builder<'c> {
     scene: Scene,
+    geometry: Geometry,
     folders: Vec<PathBuf>,
     compiler: &'c dyn GroupCompiler,
     by_name: HashMap<String, u32>,
@@ -36,11 +40,11 @@ impl<'c> Builder<'c> {
             camera: Camera::default(),
             options: Options::default(),
             materials: Vec::new(),
-            geometry: Geometry::default(),
+            geometry: Arc::default(),
             background: None,
             warnings: Vec::new(),
         };
-        Builder { scene, folders, compiler, by_name: HashMap::new() }
+        Builder { scene, geometry: Geometry::default(), folders, compiler, by_name: HashMap::new() }
     }
 
     /// Takes one child of `<World>`.
@@ -61,11 +65,11 @@ impl<'c> Builder<'c> {
 
     /// The finished scene; `root` is the place to blame for what is missing.
     pub fn finish(self, root: Place) -> Result<Scene, SceneError> {
-        if self.scene.geometry.primitives.is_empty() && self.scene.background.is_none() {
+        if self.geometry.primitives.is_empty() && self.scene.background.is_none() {
             return Err(SceneError::at(root, "the scene has nothing to see")
                 .with_help("add a <Sphere>, <Quad>, <Model> or <Background>"));
         }
-        Ok(self.scene)
+        Ok(Scene { geometry: Arc::new(self.geometry), ..self.scene })
     }
 
     fn option(&mut self, e: &Element) -> Result<(), SceneError> {
@@ -101,18 +105,17 @@ impl<'c> Builder<'c> {
         let dir = e.vector("dir")?.or(look_at.map(|at| at - eye)).unwrap_or(base.direction);
         let up = e.vector("up")?.unwrap_or(base.up);
         let fov = e.number::<f32>("fov", "an angle in degrees")?.unwrap_or(base.fov);
-        let Some(direction) = dir.try_normalize() else {
-            return Err(SceneError::at(e.place(), "the camera looks nowhere")
-                .with_help("`dir`, or `look_at` minus `eye`, must have a length"));
-        };
-        if direction.cross(up).length() <= 1e-6 * up.length() {
-            return Err(SceneError::at(e.place(), "the camera's `up` is parallel to where it looks")
-                .with_help("turn `up` aside, for example to 0,0,1"));
+        // What has no length stays so, and is a flaw.
+        let camera = Camera { eye, direction: dir.normalize_or_zero(), up, fov };
+        if let Some(flaw) = camera.flaw() {
+            let error = match flaw {
+                CameraFlaw::Angle => e.bad_value("fov", "an angle between 0 and 180 degrees"),
+                CameraFlaw::TooNarrow => SceneError::at(e.value_place("fov"), flaw.message()),
+                CameraFlaw::Eye | CameraFlaw::Direction | CameraFlaw::Up => SceneError::at(e.place(), flaw.message()),
+            };
+            return Err(error.with_help(flaw.help()));
         }
-        if !(fov > 0.0 && fov < 180.0) {
-            return Err(e.bad_value("fov", "an angle between 0 and 180 degrees"));
-        }
-        self.scene.camera = Camera { eye, direction, up, fov };
+        self.scene.camera = camera;
         Ok(())
     }
 
@@ -135,7 +138,7 @@ impl<'c> Builder<'c> {
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(e.bad_value("radius", "a number above 0"));
         }
-        self.scene.geometry.add_single(Shape::Sphere { center, radius }, material, e.place());
+        self.geometry.add_single(Shape::Sphere { center, radius }, material, e.place());
         Ok(())
     }
 
@@ -152,7 +155,7 @@ impl<'c> Builder<'c> {
             return Err(SceneError::at(e.place(), "this <Quad> has no area")
                 .with_help("`edge_x` and `edge_y` must both have a length and not be parallel"));
         }
-        self.scene.geometry.add_single(shape, material, e.place());
+        self.geometry.add_single(shape, material, e.place());
         Ok(())
     }
 
@@ -167,7 +170,7 @@ impl<'c> Builder<'c> {
                 .with_help(format!("looked in {}", looked.join(", "))));
         };
         let names = MaterialNames { by_name: &self.by_name, last };
-        let degenerate = add_mesh(&mut self.scene.geometry, &path, &names, &place)?;
+        let degenerate = add_mesh(&mut self.geometry, &path, &names, &place)?;
         if degenerate > 0 {
             let warning =
                 format!("{place}: warning: {degenerate} triangles of `{filename}` have no area and are left out");
@@ -190,14 +193,14 @@ impl<'c> Builder<'c> {
                 }
             })?,
         };
-        Weave::read(e)?.add(&mut self.scene.geometry, warp, weft, &e.place());
+        Weave::read(e)?.add(&mut self.geometry, warp, weft, &e.place());
         Ok(())
     }
 
     fn flakes(&mut self, e: &Element) -> Result<(), SceneError> {
         e.check_attributes(&Flakes::ATTRIBUTES)?;
         let material = self.last_material(e)?;
-        Flakes::read(e)?.add(&mut self.scene.geometry, material, &e.place());
+        Flakes::read(e)?.add(&mut self.geometry, material, &e.place());
         Ok(())
     }
 
@@ -258,7 +261,7 @@ impl<'c> Builder<'c> {
             let material = &mut self.scene.materials[id as usize];
             match spec.usage {
                 Usage::Displacement => material.displacement = Some(group),
-                _ => material.surface = group,
+                Usage::Surface | Usage::Volume | Usage::Shader => material.surface = group,
             }
             return;
         }

@@ -2,7 +2,7 @@
 
 use super::error::SceneError;
 use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Values};
-use super::load::within;
+use super::source::within;
 use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Shader};
 use crate::exec::Group;
 use crate::ir::lower::Binding;

@@ -4,6 +4,7 @@
 //! into something that can be run. Everything a user can get wrong ends here, as one [`SceneError`] with a place.
 
 mod build;
+mod camera;
 mod compiler;
 mod error;
 mod flakes;
@@ -12,14 +13,20 @@ mod group;
 mod load;
 mod mesh;
 mod nearest;
+// The data of the room, which is called as the room is.
+#[allow(clippy::module_inception)]
+mod scene;
+mod source;
 mod spec;
 mod weave;
 mod xml;
 
+pub use camera::{Camera, CameraFlaw};
 pub use compiler::ShaderFiles;
 pub use error::{Place, SceneError};
 pub use geometry::{Geometry, Object, Primitive, Shape};
 pub use group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
-pub use load::{Background, Camera, Material, Options, Scene, SceneSource};
 pub use nearest::nearest;
+pub use scene::{Background, Material, Options, Scene};
+pub use source::SceneSource;
 pub use spec::parse_group;

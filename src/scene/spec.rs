@@ -251,7 +251,12 @@ impl<'t> Parser<'t> {
                 let size = v.len();
                 (Values::Strings(v), size)
             }
-            _ => {
+            ParamType::Float
+            | ParamType::Color
+            | ParamType::Point
+            | ParamType::Vector
+            | ParamType::Normal
+            | ParamType::Matrix => {
                 let mut v = self.numbers::<f32>(limit);
                 v.resize(padded(v.len()), 0.0);
                 let size = v.len();

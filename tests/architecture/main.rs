@@ -38,7 +38,6 @@ const CIRCLES: &[&[&str]] = &[
     ],
     &["bsdf/sheen/albedo.rs", "bsdf/sheen/fits.rs", "bsdf/sheen/shadowing.rs"],
     &["check/call.rs", "check/rank.rs"],
-    &["cli/chart.rs", "cli/check.rs", "cli/info.rs", "cli/mod.rs", "cli/render.rs", "cli/tree.rs", "cli/verify.rs"],
     &[
         "closure/curves.rs",
         "closure/flatten.rs",
@@ -66,47 +65,12 @@ const CIRCLES: &[&[&str]] = &[
         "lang/closures/materialx.rs",
         "lang/closures/mod.rs",
     ],
-    &[
-        "measure/chart/albedo.rs",
-        "measure/chart/lambda.rs",
-        "measure/chart/layering.rs",
-        "measure/chart/mod.rs",
-        "measure/chart/precision.rs",
-        "measure/chart/sampling.rs",
-        "measure/chart/visibility.rs",
-        "measure/chart/widths.rs",
-    ],
-    &[
-        "measure/verify/finite.rs",
-        "measure/verify/laws.rs",
-        "measure/verify/mod.rs",
-        "measure/verify/reciprocity.rs",
-        "measure/verify/view.rs",
-    ],
-    &[
-        "render/accel/mod.rs",
-        "render/accel/tree.rs",
-        "render/accel/walk.rs",
-        "render/few.rs",
-        "render/film.rs",
-        "render/host.rs",
-        "render/lanes.rs",
-        "render/light.rs",
-        "render/plan.rs",
-        "render/settings.rs",
-        "render/shadow.rs",
-        "render/surface.rs",
-        "render/tile.rs",
-        "render/wave.rs",
-        "render/world.rs",
-    ],
-    &["scene/build.rs", "scene/load.rs"],
     &["preprocessor/macros.rs", "preprocessor/mod.rs"],
     &["print/expression.rs", "print/mod.rs"],
 ];
 
 /// Functions that are longer than a screen today: a list that only gets shorter.
-const LONG: &[(&str, &str)] = &[("lang/closures/boundaries.rs", "specs"), ("render/accel/walk.rs", "walk")];
+const LONG: &[(&str, &str)] = &[("lang/closures/boundaries.rs", "specs")];
 
 /// Enums that will grow: a match of one names every variant, so that a new one is thought about wherever it matters.
 /// The others (types, operators' operands, nodes of syntax) are matched for the few cases that a rule is about, and a
@@ -146,9 +110,6 @@ const OPEN: &[(&str, &str, usize)] = &[
     ("ir/verify.rs", "Instr", 1),
     ("math/instruction_set.rs", "InstructionSet", 1),
     ("measure/verify/closure.rs", "ParamKind", 3),
-    ("measure/verify/laws.rs", "Promise", 1),
-    ("measure/verify/mod.rs", "Check", 1),
-    ("measure/verify/reciprocity.rs", "Promise", 1),
     ("optimize/derive/mod.rs", "Binary", 1),
     ("optimize/derive/mod.rs", "Global", 1),
     ("optimize/derive/mod.rs", "Instr", 2),
@@ -156,10 +117,6 @@ const OPEN: &[(&str, &str, usize)] = &[
     ("optimize/derive/rules.rs", "Binary", 2),
     ("optimize/derive/rules.rs", "Unary", 1),
     ("optimize/uniform.rs", "Instr", 1),
-    ("render/accel/shape.rs", "Shape", 1),
-    ("render/shadow.rs", "Sky", 1),
-    ("scene/build.rs", "Usage", 1),
-    ("scene/spec.rs", "ParamType", 1),
 ];
 
 /// The room of a file of `src`.

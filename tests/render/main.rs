@@ -9,5 +9,6 @@ mod files;
 mod furnace;
 mod materials;
 mod rays;
+mod rounds;
 mod shaders;
 mod speed;

@@ -255,3 +255,68 @@ fn of_twins_the_first_is_hit_and_a_thousand_on_one_place_do_no_harm() {
     assert_eq!(closest(&accel, &[Ray { skip: 0, ..ray }])[0].primitive, 1);
     assert_eq!(closest(&Accel::with(&geometry(&[]), Method::Wide), &[ray])[0], Hit::NONE);
 }
+
+/// Numbers that a ray should not have, or only just.
+const AWKWARD: [f32; 14] = [
+    f32::NAN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::MAX,
+    f32::MIN,
+    f32::MIN_POSITIVE,
+    1e-45,
+    -1e-45,
+    0.0,
+    -0.0,
+    1e30,
+    -1e30,
+    1e-20,
+    1.0,
+];
+
+/// Rays of which any number may be awkward; every fourth has but one that is.
+fn awkward_rays(count: u32) -> Vec<Ray> {
+    let ray = |i: u32| {
+        let dice: Vec<[f32; 4]> = (0..7).map(|k| random::sample(SEED, i, 20 + k)).collect();
+        let mut numbers = [0.0; 7];
+        numbers[..3].copy_from_slice(&(number(i, 4) * 1.5).to_array());
+        numbers[3..6].copy_from_slice(&direction(i, 5).to_array());
+        numbers[6] = 3.0;
+        for (k, x) in numbers.iter_mut().enumerate() {
+            let changed = if i % 4 == 0 { k == (dice[0][0] * 7.0) as usize } else { dice[k][1] < 0.5 };
+            if changed {
+                *x = AWKWARD[(dice[k][2] * AWKWARD.len() as f32) as usize];
+            }
+        }
+        let [ox, oy, oz, dx, dy, dz, reach] = numbers;
+        let which = |x: f32| if x < 0.5 { NOTHING } else { (x * 40.0) as u32 };
+        let (skip, target) = (which(dice[0][3]), which(dice[1][3]));
+        Ray { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(dx, dy, dz), reach, skip, target }
+    };
+    (0..count).map(ray).collect()
+}
+
+#[test]
+fn no_ray_is_too_awkward() {
+    let flat: Vec<Shape> =
+        soup(400, 1.0).into_iter().filter(|s| !matches!(s, Shape::Triangle { .. })).take(24).collect();
+    let rays = awkward_rays(20_000);
+    let mut hits = 0;
+    // A dozen triangles have nodes with empty places, which only a ray without a direction came into.
+    for shapes in [flat, soup(400, 1.0), soup(400, 1e30), ball(2, 1.0), vec![soup(6, 1.0)[5]]] {
+        let all = geometry(&shapes);
+        for accel in [Accel::new(&all), Accel::with(&all, Method::Wide)] {
+            let found = closest(&accel, &rays);
+            let mut blocked = Vec::new();
+            accel.any(&rays, &mut blocked);
+            for ((ray, hit), blocked) in rays.iter().zip(&found).zip(blocked) {
+                let whole = ray.origin.is_finite() && ray.direction.is_finite() && !ray.reach.is_nan();
+                assert!(whole || *hit == Hit::NONE && !blocked, "{ray:?} meets {hit:?}");
+                let met = (hit.primitive as usize) < shapes.len() && hit.t > 0.0 && hit.t <= ray.reach;
+                assert!(met || *hit == Hit::NONE, "{ray:?} gives {hit:?}");
+            }
+            hits += found.iter().filter(|hit| hit.primitive != NOTHING).count();
+        }
+    }
+    assert!(hits > 5000, "only {hits} hits, which prove little");
+}

@@ -1,11 +1,11 @@
 //! The directional albedo of the sheen: polynomials, tables and direct integration.
 
+use super::effort::Effort;
 use super::figure::{Figure, Join, Point};
 use super::lanes::{Curve, curve_lanes};
-use super::race::{Runner, race};
+use super::race::{MEDIANS, Runner, race};
 use super::tables::{Axes, Interpolation, Table, nodes};
 use super::truth::{ROUGHNESSES, albedos, cosines, viewer};
-use super::{Effort, MEDIANS, point};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD, SheenAlbedo};
 use crate::bsdf::sheen::reference::Model;
 use crate::bsdf::sheen::{EXACT, Sheen};
@@ -165,7 +165,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         .zip(errors)
         .map(|((method, cost), error)| {
             let group = method.name.split([' ', ',']).next().unwrap_or_default();
-            point(if method.model == Model::Ashikhmin { "polynomial" } else { group }, &method.name, cost, error)
+            Point::new(if method.model == Model::Ashikhmin { "polynomial" } else { group }, &method.name, cost, error)
         })
         .collect();
     Ok(Figure {

@@ -1,5 +1,7 @@
 //! What a figure of the chart holds: methods with their cost and error, and which of them no other beats.
 
+use super::race::Cost;
+
 /// One method, or one setting of a method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
@@ -15,6 +17,14 @@ pub struct Point {
     pub error: f64,
     /// True when no other of its group is both cheaper and at least as exact.
     pub front: bool,
+}
+
+impl Point {
+    /// A point that may lie on the front.
+    pub fn new(group: &str, method: &str, cost: Cost, error: f64) -> Self {
+        let Cost { median, spread } = cost;
+        Point { group: group.to_owned(), method: method.to_owned(), cost: median, spread, error, front: false }
+    }
 }
 
 /// How the points of a group are joined.

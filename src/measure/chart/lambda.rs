@@ -1,10 +1,10 @@
 //! Lambda, the auxiliary function of Smith's shadowing: the published fit and ways to compute the exact one.
 
+use super::effort::Effort;
 use super::figure::{Figure, Join, Point};
 use super::lanes::{Curve, curve_lanes};
-use super::race::{Cost, Laps, Runner, race};
+use super::race::{Cost, Laps, MEDIANS, Runner, race};
 use super::truth::ROUGHNESSES;
-use super::{Effort, MEDIANS, point};
 use crate::bsdf::sheen::reference::lambda_by_area;
 use crate::bsdf::sheen::shadowing::{Exact, Published, Series};
 use std::hint::black_box;
@@ -130,8 +130,12 @@ fn costs(laps: Laps) -> Vec<Cost> {
 pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     let errors = errors(&ROUGHNESSES, &cosines(effort.cosines));
     let costs = costs(effort.laps);
-    let points: Vec<Point> =
-        METHODS.iter().zip(costs).zip(errors).map(|(((name, _), cost), error)| point("", name, cost, error)).collect();
+    let points: Vec<Point> = METHODS
+        .iter()
+        .zip(costs)
+        .zip(errors)
+        .map(|(((name, _), cost), error)| Point::new("", name, cost, error))
+        .collect();
     Ok(Figure {
         name: "lambda",
         title: "Lambda of the sheen: cost against error".to_owned(),

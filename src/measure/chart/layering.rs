@@ -1,9 +1,11 @@
 //! Rules of layering: what each costs, and what energy it loses, gains or sends only one way.
 
+use super::closures;
+use super::effort::Effort;
 use super::figure::{Figure, Join, Point};
+use super::race::MEDIANS;
 use super::race::race;
 use super::truth::ROUGHNESSES;
-use super::{Effort, MEDIANS, closures, point};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, LONG_METHOD, SheenAlbedo};
 use crate::bsdf::sheen::reference::average;
 use crate::closure::{Layering, Settings};
@@ -67,7 +69,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
             [("energy over white Lambert", loss), ("gain over a mirror", gain), ("difference of both ways", one_way)]
         {
             let error = if error < NOTHING { 0.0 } else { error };
-            points.push(point(
+            points.push(Point::new(
                 group,
                 &if error == 0.0 { format!("{name} (0)") } else { (*name).to_owned() },
                 cost,

@@ -11,7 +11,9 @@ mod albedo;
 mod axis;
 mod closures;
 pub mod draw;
+mod effort;
 pub mod figure;
+mod figures;
 mod labels;
 mod lambda;
 mod lanes;
@@ -26,69 +28,6 @@ pub mod truth;
 mod visibility;
 mod widths;
 
+pub use effort::Effort;
+pub use figures::figures;
 pub use scene::{Budget, scene_figure};
-
-use figure::{Figure, Point};
-use race::{Cost, Laps};
-
-/// How much is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Effort {
-    /// How costs are timed.
-    pub laps: Laps,
-    /// How many cosines errors are looked for at.
-    pub cosines: usize,
-    /// Steps of quadratures, as in [`crate::bsdf::sheen::reference::albedo`].
-    pub steps: usize,
-    /// Cells of the finest table of albedos: a power of two, at least 8.
-    pub cells: usize,
-}
-
-impl Effort {
-    /// Next to nothing, for tests: costs mean little, errors are those of the quick chart at fewer places.
-    pub fn tiny() -> Self {
-        Effort { laps: Laps { rounds: 3, turn: 1e-5 }, cosines: 13, steps: 24, cells: 8 }
-    }
-
-    /// Some seconds.
-    pub fn quick() -> Self {
-        Effort { laps: Laps { rounds: 81, turn: 2e-4 }, cosines: 25, steps: 24, cells: 64 }
-    }
-
-    /// A minute or two.
-    pub fn full() -> Self {
-        Effort { laps: Laps { rounds: 401, turn: 3e-4 }, cosines: 61, steps: 32, cells: 128 }
-    }
-}
-
-/// A point that may lie on the front.
-fn point(group: &str, method: &str, cost: Cost, error: f64) -> Point {
-    let Cost { median, spread } = cost;
-    Point { group: group.to_owned(), method: method.to_owned(), cost: median, spread, error, front: false }
-}
-
-/// What a cost is in figures whose methods are timed in turns.
-const MEDIANS: &str = "Cost: the median of interleaved rounds, with its quartiles.";
-
-/// What measures a figure.
-type Measure = fn(&Effort) -> Result<Figure, String>;
-
-/// Measures all figures that need no scene; tells how many of how many are done.
-pub fn figures(effort: &Effort, progress: &dyn Fn(usize, usize)) -> Result<Vec<Figure>, String> {
-    let all: [Measure; 7] = [
-        lambda::figure,
-        visibility::figure,
-        albedo::figure,
-        sampling::figure,
-        layering::figure,
-        widths::figure,
-        precision::figure,
-    ];
-    let mut out = Vec::new();
-    for (done, measure) in all.iter().enumerate() {
-        progress(done, all.len());
-        out.push(measure(effort)?);
-    }
-    progress(all.len(), all.len());
-    Ok(out)
-}

@@ -1,9 +1,10 @@
 //! Precision: the sheen's formula in single and in double precision, with short and with general powers.
 
+use super::closures;
+use super::effort::Effort;
 use super::figure::{Figure, Join, Point};
-use super::race::{Runner, race};
+use super::race::{MEDIANS, Runner, race};
 use super::truth::viewer;
-use super::{Effort, MEDIANS, closures, point};
 use crate::bsdf::sheen::reference::{self, Model};
 use crate::bsdf::sheen::shadowing::Exact;
 use crate::bsdf::sheen::{EXACT, Sheen};
@@ -136,7 +137,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         .collect();
     let costs = race(&mut runners, effort.laps);
     let points: Vec<Point> =
-        NAMES.iter().zip(costs).zip(errors()).map(|((name, cost), error)| point("", name, cost, error)).collect();
+        NAMES.iter().zip(costs).zip(errors()).map(|((name, cost), error)| Point::new("", name, cost, error)).collect();
     Ok(Figure {
         name: "precision",
         title: "Precision of the sheen's formula: cost against error".to_owned(),

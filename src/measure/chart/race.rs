@@ -17,6 +17,9 @@ impl<'a> Runner<'a> {
     }
 }
 
+/// What a cost is in figures whose methods are timed in turns.
+pub const MEDIANS: &str = "Cost: the median of interleaved rounds, with its quartiles.";
+
 /// Nanoseconds an evaluation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cost {

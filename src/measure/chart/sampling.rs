@@ -1,9 +1,11 @@
 //! Sampling of the sheen: what a sample costs and how much its weight varies.
 
+use super::closures;
+use super::effort::Effort;
 use super::figure::{Figure, Join, Point};
+use super::race::MEDIANS;
 use super::race::race;
 use super::truth::{directions, viewer};
-use super::{Effort, MEDIANS, closures, point};
 use crate::bsdf::sheen::normals::ByNormals;
 use crate::bsdf::sheen::{EXACT, Sheen};
 use crate::bsdf::{Scatter, params};
@@ -48,8 +50,11 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         }
     }
     let costs = race(&mut runners, effort.laps);
-    let points: Vec<Point> =
-        rows.iter().zip(costs).map(|((group, name, variance), cost)| point(group, name, cost, *variance)).collect();
+    let points: Vec<Point> = rows
+        .iter()
+        .zip(costs)
+        .map(|((group, name, variance), cost)| Point::new(group, name, cost, *variance))
+        .collect();
     Ok(Figure {
         name: "sampling",
         title: "Sampling of the sheen: cost of a sample against its variance".to_owned(),

@@ -91,7 +91,7 @@ pub fn scene_figure(scene: &Scene, budget: &Budget, progress: &dyn Fn(usize, usi
             for ((settings, reference), (error, times)) in settings.iter().zip(&references).zip(&mut seen) {
                 let settings = Settings { samples, seed: repeat, ..settings.clone() };
                 let start = Instant::now();
-                let made = render(scene, &settings, &Silent)?;
+                let made = render(scene, &settings, &Silent).map_err(|e| e.to_string())?;
                 times.push(start.elapsed().as_secs_f64());
                 *error += difference(&made, reference) / f64::from(budget.repeats);
             }
@@ -103,7 +103,7 @@ pub fn scene_figure(scene: &Scene, budget: &Budget, progress: &dyn Fn(usize, usi
             let last = image + 1 == budget.images;
             let label = if last { label(name, error * cost.median) } else { String::new() };
             // A line is a setting, so the group that gives it its color is the setting.
-            points.push(super::point(name, &label, cost, error));
+            points.push(Point::new(name, &label, cost, error));
         }
     }
     let points: Vec<Point> = points.into_iter().flatten().collect();
@@ -144,7 +144,7 @@ fn references(
         if !made.iter().any(|(g, _)| g == group) {
             progress(made.len());
             let converged = Settings { samples: budget.reference, seed: REFERENCE_SEED, ..settings.clone() };
-            made.push((group, Arc::new(render(scene, &converged, &Silent)?)));
+            made.push((group, Arc::new(render(scene, &converged, &Silent).map_err(|e| e.to_string())?)));
         }
         out.extend(made.iter().find(|(g, _)| g == group).map(|(_, image)| Arc::clone(image)));
     }

@@ -1,9 +1,11 @@
 //! The visibility term of the sheen: what the choice of Lambda does to a whole lobe and its energy.
 
+use super::closures;
+use super::effort::Effort;
 use super::figure::{Figure, Join, Point};
+use super::race::MEDIANS;
 use super::race::race;
 use super::truth::{ROUGHNESSES, albedos, directions, viewer};
-use super::{Effort, MEDIANS, closures, point};
 use crate::bsdf::sheen::reference::Model;
 use crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, SERIES, Sheen};
 use crate::bsdf::{Scatter, params};
@@ -55,7 +57,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         .zip(costs)
         // The visibility of Ashikhmin has no Lambda to soften.
         .filter(|((group, name, _), _)| **group != "softened" || **name != names[2])
-        .map(|((group, name, error), cost)| point(group, name, cost, *error))
+        .map(|((group, name, error), cost)| Point::new(group, name, cost, *error))
         .collect();
     Ok(Figure {
         name: "visibility",

@@ -1,8 +1,9 @@
 //! Widths of batches: what a lane costs when so many are shaded, or evaluated, at once.
 
-use super::figure::{Figure, Join};
+use super::closures;
+use super::effort::Effort;
+use super::figure::{Figure, Join, Point};
 use super::race::race;
-use super::{Effort, closures, point};
 use crate::closure::Settings;
 
 /// Cloth of woven threads with noise: the longest of the usual shaders.
@@ -35,7 +36,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
     let costs = race(&mut runners, effort.laps);
     let mut points = Vec::new();
     for ((group, width), cost) in rows.into_iter().zip(costs) {
-        let mut p = point(group, "", cost, cost.median);
+        let mut p = Point::new(group, "", cost, cost.median);
         // Here the horizontal number is the width, and the cost stands upright.
         (p.cost, p.spread) = (width as f64, [width as f64; 2]);
         p.method =

@@ -40,15 +40,20 @@ pub fn energy(seen: &[Seen], promises: Promises) -> Option<Finding> {
         let excess = albedo - 1.0 - error;
         let broken = albedo.is_nan() || excess > most;
         let lossy = lossless && (albedo - 1.0).abs() > LOSSLESS + error;
-        let (verdict, note) = match promise {
-            Promise::Waived(why) if broken => (Verdict::Waived, why.to_owned()),
-            Promise::Open if broken => (Verdict::Info, String::new()),
-            _ if broken => {
-                (Verdict::Fail, format!("sends back {:.2} % more light than arrives", 100.0 * (albedo - 1.0)))
+        let (verdict, note) = if broken {
+            match promise {
+                Promise::Kept => {
+                    (Verdict::Fail, format!("sends back {:.2} % more light than arrives", 100.0 * (albedo - 1.0)))
+                }
+                Promise::Waived(why) => (Verdict::Waived, why.to_owned()),
+                Promise::Open => (Verdict::Info, String::new()),
             }
-            _ if lossy => (Verdict::Fail, "is to be lossless".to_owned()),
-            _ if error > 10.0 * most => (Verdict::Pass, format!("known to +- {error:.0e} only")),
-            _ => (Verdict::Pass, String::new()),
+        } else if lossy {
+            (Verdict::Fail, "is to be lossless".to_owned())
+        } else if error > 10.0 * most {
+            (Verdict::Pass, format!("known to +- {error:.0e} only"))
+        } else {
+            (Verdict::Pass, String::new())
         };
         let (severity, bound) = if lossless {
             ((albedo - 1.0).abs(), format!("1 +- {LOSSLESS:e}"))

@@ -1,7 +1,7 @@
 //! One view of a variant: its cells, its integrals, and what its samples add up to.
 
-use super::Effort;
 use super::draws::{Draw, Kind, draw};
+use super::effort::Effort;
 use super::subject::Scatterer;
 use crate::closure::Evaluation;
 use crate::math::columns::Column3;

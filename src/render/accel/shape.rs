@@ -24,7 +24,7 @@ impl Analytic {
             Shape::Quad { corner, edge_x, edge_y } if self.id != skip => {
                 quad(origin - corner, direction, edge_x, edge_y)
             }
-            _ => MISS,
+            Shape::Quad { .. } | Shape::Triangle { .. } => MISS,
         }
     }
 }

@@ -86,14 +86,14 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// The tree over `geometry`, whose primitives reach as far as `magnitude` from the origin.
-    pub fn new(geometry: &Geometry, magnitude: &[f32]) -> Self {
+    /// The tree over `geometry`; the box of each primitive is wider by its `margin` on all sides.
+    pub fn new(geometry: &Geometry, margin: &[f32]) -> Self {
         if geometry.primitives.is_empty() {
             let mut tree = Tree::empty(0);
             tree.nodes.push(Node::EMPTY);
             return tree;
         }
-        let pairs = pairs(geometry, magnitude);
+        let pairs = pairs(geometry, margin);
         Opening::new(&pairs, geometry).run()
     }
 
@@ -111,8 +111,8 @@ impl Tree {
 }
 
 /// The tree of pairs over the padded boxes of all primitives.
-fn pairs(geometry: &Geometry, magnitude: &[f32]) -> Bvh2 {
-    let bounds = |(i, p): (usize, &crate::scene::Primitive)| bounds(&p.shape, super::OFFSET * magnitude[i]);
+fn pairs(geometry: &Geometry, margin: &[f32]) -> Bvh2 {
+    let bounds = |(i, p): (usize, &crate::scene::Primitive)| bounds(&p.shape, margin[i]);
     let bounds: Vec<Aabb> = geometry.primitives.iter().enumerate().map(bounds).collect();
     let params = BvhBuildParams {
         ploc_search_distance: PlocSearchDistance::High,

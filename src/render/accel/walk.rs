@@ -13,9 +13,9 @@
 //! **Ties** go to the primitive that comes first in the scene, whatever the order in which leaves are met.
 
 use super::prefetch::prefetch;
+use super::ray::{Hit, NOTHING, Ray};
 use super::shape::Analytic;
 use super::tree::{ANALYTIC, BLOCK, Block, LANES, Node, Tree, WIDTH};
-use super::{Hit, NOTHING, Ray};
 use crate::lanes;
 
 /// Four roundings and a little: how much later than computed a ray may leave a box.
@@ -135,6 +135,28 @@ fn take(best: &mut Hit, t: f32, primitive: u32, u: f32, v: f32) {
     }
 }
 
+/// Takes what a ray meets of a block; for `ANY`, true says that something is short of its reach.
+#[inline(always)]
+fn meet<const ANY: bool>(best: &mut Hit, block: &Block, mut m: Meeting) -> bool {
+    while m.hit != 0 {
+        let k = m.hit.trailing_zeros() as usize % LANES;
+        m.hit &= m.hit - 1;
+        if !ANY {
+            take(best, m.t[k], block.ids[k], m.u[k], m.v[k]);
+        } else if m.t[k] < best.t {
+            *best = Hit { t: m.t[k], primitive: block.ids[k], u: m.u[k], v: m.v[k] };
+            return true;
+        }
+    }
+    false
+}
+
+/// True for a ray that can meet something: a NaN would be in every box, also where a node has no child.
+#[inline(always)]
+fn goes_somewhere(ray: &Ray) -> bool {
+    ray.origin.is_finite() && ray.direction.is_finite() && !ray.reach.is_nan()
+}
+
 /// The lists of a tree.
 struct Parts<'a> {
     nodes: &'a [Node],
@@ -203,17 +225,9 @@ fn walk<const ANY: bool>(tree: &Parts, ray: &Ray, stack: &mut [u64]) -> Hit {
             }
         } else if current & BLOCK != 0 {
             let block = &tree.blocks[(current ^ BLOCK) as usize];
-            let mut m = triangles(block, &traveller, best.t);
-            while m.hit != 0 {
-                let k = m.hit.trailing_zeros() as usize % LANES;
-                m.hit &= m.hit - 1;
-                if ANY {
-                    if m.t[k] < best.t {
-                        return Hit { t: m.t[k], primitive: block.ids[k], u: m.u[k], v: m.v[k] };
-                    }
-                    continue;
-                }
-                take(&mut best, m.t[k], block.ids[k], m.u[k], m.v[k]);
+            let meeting = triangles(block, &traveller, best.t);
+            if meet::<ANY>(&mut best, block, meeting) {
+                return best;
             }
             limit = best.t * LATE;
         } else {
@@ -254,7 +268,7 @@ lanes! {
         let mut stack = vec![0u64; tree.stack];
         let parts = Parts::new(tree);
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = walk::<false>(&parts, ray, &mut stack);
+            *hit = if goes_somewhere(ray) { walk::<false>(&parts, ray, &mut stack) } else { Hit::NONE };
             if hit.primitive == NOTHING {
                 hit.t = f32::INFINITY;
             }
@@ -268,7 +282,7 @@ lanes! {
         let mut stack = vec![0u64; tree.stack];
         let parts = Parts::new(tree);
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = walk::<true>(&parts, ray, &mut stack).primitive != NOTHING;
+            *blocked = goes_somewhere(ray) && walk::<true>(&parts, ray, &mut stack).primitive != NOTHING;
         }
     }
 }

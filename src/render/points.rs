@@ -1,84 +1,22 @@
-//! From a hit to a shading point: position, normals, texture coordinates and derivatives, as far as they are read.
+//! From a segment to a shading point: position, normals, texture coordinates and derivatives, as far as they are read.
 
+use super::accel::Hit;
 use super::block::{Row3, WIDTH, get, set, store};
+use super::form::Form;
 use super::plan::Needs;
+use super::segment::Segment;
 use crate::exec::Points;
 use crate::lanes;
 use crate::scene::{Geometry, Primitive, Shape};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// A ray and where it hits.
-#[derive(Clone, Copy, Debug)]
-pub struct RayHitPoint {
-    /// The ray's origin.
-    pub origin: Vec3,
-    /// Its unit direction.
-    pub direction: Vec3,
-    /// Distance of the hit.
-    pub t: f32,
-    /// The primitive that is hit.
-    pub primitive: u32,
-    /// Surface coordinates, as `accel::Hit` has them.
-    pub u: f32,
-    /// Surface coordinates, as `accel::Hit` has them.
-    pub v: f32,
-    /// Width of the ray's cone at its origin.
-    pub radius: f32,
-    /// Growth of that width with distance.
-    pub spread: f32,
-    /// Bits of the ray's kind.
-    pub ray_type: i32,
-}
-
-/// A shape as three vectors: centre and radius, or a corner and two edges.
-#[derive(Clone, Copy, Debug)]
-pub struct Form {
-    /// The centre, the corner or the first vertex.
-    pub a: Vec3,
-    /// The first edge; the radius for a sphere.
-    pub b: Vec3,
-    /// The second edge.
-    pub c: Vec3,
-    /// True for a sphere.
-    pub round: bool,
-}
-
-impl Form {
-    /// The form of a shape.
-    #[inline(always)]
-    pub fn new(shape: &Shape) -> Self {
-        match *shape {
-            Shape::Sphere { center, radius } => Form { a: center, b: Vec3::splat(radius), c: Vec3::ZERO, round: true },
-            Shape::Quad { corner, edge_x, edge_y } => Form { a: corner, b: edge_x, c: edge_y, round: false },
-            Shape::Triangle { a, b, c } => Form { a, b: b - a, c: c - a, round: false },
-        }
-    }
-
-    /// Position and geometric normal (unit, outward, not turned) of the hit of a ray at `t`, `u` and `v`.
-    #[inline(always)]
-    fn place(&self, origin: Vec3, direction: Vec3, t: f32, u: f32, v: f32) -> (Vec3, Vec3) {
-        let across = self.b.cross(self.c);
-        let from = origin + t * direction - self.a;
-        let long = if self.round { from } else { across };
-        let length = long.length();
-        let n = if length > 0.0 { long / length } else { Vec3::Y };
-        let p = if self.round { self.a + self.b.x * n } else { self.a + u * self.b + v * self.c };
-        (p, n)
-    }
-}
-
-/// Position and geometric normal (unit, outward, not turned) of a hit.
-#[inline]
-pub fn place(geometry: &Geometry, hit: &RayHitPoint) -> (Vec3, Vec3) {
-    Form::new(&geometry.primitives[hit.primitive as usize].shape).place(hit.origin, hit.direction, hit.t, hit.u, hit.v)
-}
-
 /// The hits of a few rays.
 struct Hits {
     origin: Row3,
     direction: Row3,
-    place: Row3,
+    /// Distance and surface coordinates.
+    met: Row3,
     form: [Row3; 3],
     round: [u32; WIDTH],
     p: Row3,
@@ -93,7 +31,7 @@ impl Hits {
         Hits {
             origin: zero,
             direction: zero,
-            place: zero,
+            met: zero,
             form: [zero; 3],
             round: [0; WIDTH],
             p: zero,
@@ -104,11 +42,12 @@ impl Hits {
     }
 
     #[inline(always)]
-    fn load(&mut self, lane: usize, hit: &RayHitPoint, shape: &Shape) {
+    fn load(&mut self, lane: usize, segment: &Segment, shape: &Shape) {
         let form = Form::new(shape);
-        set(&mut self.origin, lane, hit.origin);
-        set(&mut self.direction, lane, hit.direction);
-        set(&mut self.place, lane, Vec3::new(hit.t, hit.u, hit.v));
+        let Segment { origin, direction, hit, .. } = *segment;
+        set(&mut self.origin, lane, origin);
+        set(&mut self.direction, lane, direction);
+        set(&mut self.met, lane, Vec3::new(hit.t, hit.u, hit.v));
         set(&mut self.form[0], lane, form.a);
         set(&mut self.form[1], lane, form.b);
         set(&mut self.form[2], lane, form.c);
@@ -117,13 +56,13 @@ impl Hits {
 }
 
 lanes! {
-    /// Places all rays' hits and turns the normals to the rays.
-    fn place_block(hits: &mut Hits) {
+    /// Finds all hits' positions and normals and turns the normals to the rays.
+    fn meet_block(hits: &mut Hits) {
         for i in 0..WIDTH {
             let [a, b, c] = [0, 1, 2].map(|k| get(&hits.form[k], i));
             let form = Form { a, b, c, round: hits.round[i] != 0 };
             let direction = get(&hits.direction, i);
-            let (p, n) = form.place(get(&hits.origin, i), direction, hits.place[0][i], hits.place[1][i], hits.place[2][i]);
+            let (p, n) = form.meet(get(&hits.origin, i), direction, hits.met.map(|row| row[i]));
             let behind = n.dot(direction) > 0.0;
             set(&mut hits.p, i, p);
             set(&mut hits.outward, i, n);
@@ -133,41 +72,60 @@ lanes! {
     }
 }
 
-/// Fills `points` with what the rays of `hits` have met, turned to the rays as testrender turns it.
-pub fn fill<'h>(
+/// Fills `points` with what the rays of `segments` have met, turned to the rays as testrender turns it.
+pub fn fill<'s>(
     points: &mut Points,
     geometry: &Geometry,
-    mut hits: impl Iterator<Item = &'h RayHitPoint>,
+    mut segments: impl Iterator<Item = &'s Segment>,
     needs: &Needs,
 ) {
     let mut block = Hits::new();
     let more = needs.uv || needs.tangents || needs.any_derivative() || !geometry.normals.is_empty();
     for start in (0..points.len).step_by(WIDTH) {
         let len = WIDTH.min(points.len - start);
-        let mut met: [Option<&RayHitPoint>; WIDTH] = [None; WIDTH];
-        for (k, hit) in hits.by_ref().take(len).enumerate() {
-            let primitive = &geometry.primitives[hit.primitive as usize];
-            block.load(k, hit, &primitive.shape);
-            points.ray_type[start + k] = hit.ray_type;
+        let mut taken: [Option<&Segment>; WIDTH] = [None; WIDTH];
+        for (k, segment) in segments.by_ref().take(len).enumerate() {
+            let primitive = &geometry.primitives[segment.hit.primitive as usize];
+            block.load(k, segment, &primitive.shape);
+            points.ray_type[start + k] = segment.ray_type;
             points.surface_area[start + k] = geometry.objects[primitive.object as usize].surface_area;
-            met[k] = Some(hit);
+            taken[k] = Some(segment);
         }
-        place_block(&mut block);
+        meet_block(&mut block);
         store(&mut points.i, start, len, &block.direction);
         store(&mut points.p, start, len, &block.p);
         store(&mut points.n, start, len, &block.facing);
         store(&mut points.ng, start, len, &block.facing);
         points.backfacing[start..start + len].copy_from_slice(&block.behind[..len]);
         if more {
-            for (k, hit) in met.iter().flatten().enumerate() {
-                follow(points, start + k, geometry, hit, needs, get(&block.outward, k));
+            for (k, segment) in taken.iter().flatten().enumerate() {
+                follow(points, start + k, geometry, segment, needs, get(&block.outward, k));
             }
         }
     }
 }
 
+/// Fills one lane with what a background shader sees along `direction`.
+pub fn fill_sky(points: &mut Points, lane: usize, direction: Vec3, ray_type: i32) {
+    points.p.set(lane, Vec3::ZERO);
+    points.i.set(lane, direction);
+    points.n.set(lane, -direction);
+    points.ng.set(lane, -direction);
+    points.u[lane] = 0.0;
+    points.v[lane] = 0.0;
+    points.surface_area[lane] = 4.0 * PI;
+    points.backfacing[lane] = 0;
+    points.ray_type[lane] = ray_type;
+    for column in
+        [&mut points.dpdu, &mut points.dpdv, &mut points.dpdx, &mut points.dpdy, &mut points.didx, &mut points.didy]
+    {
+        column.set(lane, Vec3::ZERO);
+    }
+}
+
 /// Smooth normals, texture coordinates, tangents and derivatives of one lane, as far as they are read.
-fn follow(points: &mut Points, lane: usize, geometry: &Geometry, hit: &RayHitPoint, needs: &Needs, outward: Vec3) {
+fn follow(points: &mut Points, lane: usize, geometry: &Geometry, segment: &Segment, needs: &Needs, outward: Vec3) {
+    let hit = &segment.hit;
     let primitive = &geometry.primitives[hit.primitive as usize];
     if let Some([na, nb, nc]) = geometry.normals.get(primitive.normals as usize) {
         let smooth = ((1.0 - hit.u - hit.v) * *na + hit.u * *nb + hit.v * *nc).normalize_or(outward);
@@ -184,11 +142,11 @@ fn follow(points: &mut Points, lane: usize, geometry: &Geometry, hit: &RayHitPoi
         points.dpdv.set(lane, dpdv);
     }
     if needs.any_derivative() {
-        footprint(points, lane, hit, points.n.get(lane));
+        footprint(points, lane, segment, points.n.get(lane));
     }
 }
 
-fn texture_coordinates(geometry: &Geometry, primitive: &Primitive, hit: &RayHitPoint, n: Vec3) -> Vec2 {
+fn texture_coordinates(geometry: &Geometry, primitive: &Primitive, hit: &Hit, n: Vec3) -> Vec2 {
     match primitive.shape {
         Shape::Sphere { .. } => {
             let around = (-n.x).atan2(-n.z) * (0.5 * FRAC_1_PI);
@@ -229,21 +187,21 @@ fn tangents(geometry: &Geometry, primitive: &Primitive, n: Vec3) -> (Vec3, Vec3)
 
 /// Derivatives from the ray's cone: two axes across the ray, as wide as the cone there, projected onto the surface.
 ///
-/// The camera's cone is one pixel wide. A bounce keeps the width it has and widens its growth (see `bounce`), which is
+/// The camera's cone is one pixel wide. A bounce keeps the width it has and widens its growth (see `stages/scatter`), which is
 /// cheap and errs toward blur. Source: the way testrender carries radius and spread.
-fn footprint(points: &mut Points, lane: usize, hit: &RayHitPoint, n: Vec3) {
-    let i = hit.direction;
+fn footprint(points: &mut Points, lane: usize, segment: &Segment, n: Vec3) {
+    let i = segment.direction;
     let x = if i.x.abs() > 0.01 { Vec3::new(i.z, 0.0, -i.x) } else { Vec3::new(0.0, -i.z, i.y) }.normalize_or_zero();
     // In this order the cross product of the two derivatives of P faces the viewer, as `calculatenormal` wants it.
     let y = x.cross(i);
-    let width = hit.radius + hit.spread * hit.t;
+    let width = segment.width + segment.spread * segment.hit.t;
     let cos = -i.dot(n);
     let project = |d: Vec3| if cos.abs() > 1e-3 { d + i * (d.dot(n) / cos) } else { d };
     let (dpdx, dpdy) = (project(x * width), project(y * width));
     points.dpdx.set(lane, dpdx);
     points.dpdy.set(lane, dpdy);
-    points.didx.set(lane, x * hit.spread);
-    points.didy.set(lane, y * hit.spread);
+    points.didx.set(lane, x * segment.spread);
+    points.didy.set(lane, y * segment.spread);
     let (dpdu, dpdv) = (points.dpdu.get(lane), points.dpdv.get(lane));
     let uv = |d: Vec3| {
         // Least squares of d = du dPdu + dv dPdv: exact when d lies in the surface.

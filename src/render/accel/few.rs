@@ -2,13 +2,11 @@
 //!
 //! On the scene of figure 1 (seven primitives) a hierarchy is one node, whose boxes cost about as much to test as what
 //! is in them. Rays are the lanes, so that the nearest hit is a select, not a search. The formulas are those of
-//! `accel/shape.rs`, term by term, so that both methods give the same answers.
+//! `shape.rs`, term by term, so that both methods give the same answers.
 
-use super::accel::{Hit, NOTHING, Ray};
-use super::block::{Row, WIDTH};
-use super::shadow::ShadowRay;
-use super::wave::Path;
+use super::ray::{Hit, NOTHING, Ray};
 use crate::lanes;
+use crate::render::block::{Row, WIDTH};
 use crate::scene::{Geometry, Shape};
 use glam::Vec3;
 
@@ -65,20 +63,14 @@ impl Block {
         }
     }
 
-    #[inline(always)]
-    fn load(&mut self, k: usize, origin: Vec3, direction: Vec3, reach: f32, skip: u32) {
-        (self.ox[k], self.oy[k], self.oz[k]) = (origin.x, origin.y, origin.z);
-        (self.dx[k], self.dy[k], self.dz[k]) = (direction.x, direction.y, direction.z);
-        (self.t[k], self.skip[k], self.id[k]) = (reach, skip, NOTHING);
-    }
-
     /// Takes `rays` into the first lanes, each to meet what is nearer than its reach, or as near if `at_reach` says so.
     #[inline(always)]
-    fn load_rays(&mut self, rays: &[Ray], at_reach: bool) {
+    fn load(&mut self, rays: &[Ray], at_reach: bool) {
         for (k, ray) in rays.iter().enumerate() {
-            let reach = if at_reach { ray.reach.next_up() } else { ray.reach };
-            self.load(k, ray.origin, ray.direction, reach, ray.skip);
-            self.target[k] = ray.target;
+            (self.ox[k], self.oy[k], self.oz[k]) = (ray.origin.x, ray.origin.y, ray.origin.z);
+            (self.dx[k], self.dy[k], self.dz[k]) = (ray.direction.x, ray.direction.y, ray.direction.z);
+            self.t[k] = if at_reach { ray.reach.next_up() } else { ray.reach };
+            (self.skip[k], self.target[k], self.id[k]) = (ray.skip, ray.target, NOTHING);
         }
     }
 
@@ -105,7 +97,7 @@ impl Block {
         }
     }
 
-    /// As `sphere` of `accel/shape.rs`, with selects for its branches.
+    /// As `sphere` of `shape.rs`, with selects for its branches.
     #[inline(always)]
     fn sphere(&mut self, center: Vec3, r: f32, id: u32) {
         let (mut along, mut left) = ([0.0; WIDTH], [0.0; WIDTH]);
@@ -137,7 +129,7 @@ impl Block {
         }
     }
 
-    /// As `quad` of `accel/shape.rs`, with selects for its branches.
+    /// As `quad` of `shape.rs`, with selects for its branches.
     #[inline(always)]
     // `contains` asks one question after the other, which lanes cannot.
     #[allow(clippy::manual_range_contains)]
@@ -162,45 +154,11 @@ impl Block {
 }
 
 lanes! {
-    /// Stores the closest hit of each active path.
-    pub fn intersect(few: &Few, paths: &mut [Path], active: &[u32]) {
-        let mut block = Block::empty();
-        for part in active.chunks(WIDTH) {
-            for (k, &i) in part.iter().enumerate() {
-                let path = &paths[i as usize];
-                block.load(k, path.hit.origin, path.hit.direction, f32::INFINITY, path.from);
-            }
-            block.meet_all(few);
-            for (k, &i) in part.iter().enumerate() {
-                let hit = &mut paths[i as usize].hit;
-                (hit.t, hit.primitive, hit.u, hit.v) = (block.t[k], block.id[k], block.u[k], block.v[k]);
-            }
-        }
-    }
-}
-
-lanes! {
-    /// Keeps in `clear` the numbers of the rays that nothing stops.
-    pub fn unoccluded(few: &Few, rays: &[ShadowRay], clear: &mut Vec<u32>) {
-        let mut block = Block::empty();
-        for (number, part) in rays.chunks(WIDTH).enumerate() {
-            for (k, ray) in part.iter().enumerate() {
-                block.load(k, ray.origin, ray.direction, ray.distance, ray.from);
-                block.target[k] = ray.target;
-            }
-            block.meet_all(few);
-            let free = (0..part.len()).filter(|k| block.id[*k] == NOTHING);
-            clear.extend(free.map(|k| (number * WIDTH + k) as u32));
-        }
-    }
-}
-
-lanes! {
     /// Gives `hits` the closest hit of each ray.
     pub fn closest(few: &Few, rays: &[Ray], hits: &mut [Hit]) {
         let mut block = Block::empty();
         for (rays, hits) in rays.chunks(WIDTH).zip(hits.chunks_mut(WIDTH)) {
-            block.load_rays(rays, true);
+            block.load(rays, true);
             block.meet_all(few);
             for (k, hit) in hits.iter_mut().enumerate() {
                 *hit = block.hit(few, k);
@@ -214,7 +172,7 @@ lanes! {
     pub fn any(few: &Few, rays: &[Ray], blocked: &mut [bool]) {
         let mut block = Block::empty();
         for (rays, blocked) in rays.chunks(WIDTH).zip(blocked.chunks_mut(WIDTH)) {
-            block.load_rays(rays, false);
+            block.load(rays, false);
             block.meet_all(few);
             for (k, blocked) in blocked.iter_mut().enumerate() {
                 *blocked = block.id[k] != NOTHING;

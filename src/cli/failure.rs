@@ -1,0 +1,30 @@
+//! What a command ends with when it does not do what it was asked for.
+
+use crate::render::RenderError;
+use crate::scene::SceneError;
+
+/// What a command ends with.
+#[derive(Debug)]
+pub enum Failure {
+    /// A shader or a scene is wrong: status 1.
+    Wrong(String),
+    /// The command was used wrongly, or a file cannot be read or written: status 2.
+    Usage(String),
+}
+
+impl Failure {
+    /// A scene that cannot be loaded.
+    pub fn of_scene(error: SceneError) -> Self {
+        // Without a place the scene file itself could not be read.
+        if error.place.is_none() { Failure::Usage(error.to_string()) } else { Failure::Wrong(error.to_string()) }
+    }
+
+    /// A scene that cannot be rendered.
+    pub fn of_render(error: RenderError) -> Self {
+        // What a shader has to say begins with its own place.
+        Failure::Wrong(match error {
+            RenderError::Shader(message) => message,
+            other => format!("error: {other}"),
+        })
+    }
+}

@@ -1,0 +1,299 @@
+//! The renderer: a world and a film that whoever drives it fills round after round, and changes in between.
+
+use super::accel::Accel;
+use super::error::RenderError;
+use super::film::Film;
+use super::image::{About, Image};
+use super::path::Dropped;
+use super::plan::Plan;
+use super::progress::Progress;
+use super::rounds::{Rounds, Task};
+use super::settings::Settings;
+use super::sky::Sky;
+use super::tile::Tile;
+use super::trace::render_tile;
+use super::wave::Wave;
+use super::world::World;
+use crate::exec::{Group, Report, ReportPlace};
+use crate::scene::{Camera, Scene};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+/// A scene that is being rendered.
+///
+/// [`round`](Renderer::round) adds samples, [`picture`](Renderer::picture) gives what there is so far. After all rounds the
+/// picture is the one that [`render`](fn@super::render) gives, to the last bit, whatever the rounds were. A change starts the
+/// picture anew; the hierarchy over the geometry is built once and outlives all of them.
+pub struct Renderer {
+    world: World,
+    pool: rayon::ThreadPool,
+    /// Each thread's memory.
+    waves: Vec<Mutex<Option<Wave>>>,
+    gathered: Mutex<Gathered>,
+    seconds_preparing: f64,
+}
+
+/// What the threads put together.
+struct Gathered {
+    film: Film,
+    rounds: Rounds,
+    dropped: Dropped,
+    rays: u64,
+    reports: Vec<Report>,
+    seconds_tracing: f64,
+}
+
+impl Gathered {
+    /// Nothing yet, but what was said while the world was made. The clock of a time limit runs from `start`.
+    fn new(world: &World, start: Instant) -> Self {
+        Gathered {
+            film: Film::new(&world.settings),
+            rounds: Rounds::new(&world.settings, start),
+            dropped: Dropped::default(),
+            rays: 0,
+            reports: world.reports.clone(),
+            seconds_tracing: 0.0,
+        }
+    }
+
+    /// Takes in what a thread has found out of one tile.
+    fn keep(&mut self, task: &Task, wave: &mut Wave) {
+        self.rounds.done(task);
+        self.dropped.merge(&std::mem::take(&mut wave.dropped));
+        self.rays += std::mem::take(&mut wave.traced);
+        self.reports.extend(wave.shading.take_reports());
+    }
+
+    /// The first report that a shader cannot be run.
+    fn check(&self) -> Result<(), RenderError> {
+        let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
+        self.reports.iter().find_map(fatal).map_or(Ok(()), Err)
+    }
+}
+
+impl Renderer {
+    /// Prepares `scene`, of which it keeps a copy that shares geometry and programs; nothing is rendered yet.
+    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
+        let start = Instant::now();
+        settings.check().map_err(RenderError::Settings)?;
+        check_camera(&scene.camera)?;
+        let pool = pool(settings)?;
+        let make = || {
+            let accel = Arc::new(Accel::new(&scene.geometry));
+            World::new(accel, scene.clone(), settings.clone(), None)
+        };
+        let world = pool.install(make);
+        Ok(Renderer {
+            waves: empty_waves(&pool),
+            gathered: Mutex::new(Gathered::new(&world, start)),
+            seconds_preparing: start.elapsed().as_secs_f64(),
+            world,
+            pool,
+        })
+    }
+
+    /// The scene as it is rendered now.
+    pub fn scene(&self) -> &Scene {
+        &self.world.scene
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &Settings {
+        &self.world.settings
+    }
+
+    /// What the scene needs.
+    pub fn plan(&self) -> &Plan {
+        &self.world.plan
+    }
+
+    /// The hierarchy over the scene's geometry: the same one from `new` on.
+    pub fn accel(&self) -> &Arc<Accel> {
+        &self.world.accel
+    }
+
+    /// Renders the next round; true says that something is left to do, also when `progress` has stopped the round.
+    ///
+    /// A render of a fixed number of samples is one round. One that stops by noise or time has as many as it takes.
+    pub fn round(&mut self, progress: &dyn Progress) -> Result<bool, RenderError> {
+        self.round_of(u32::MAX, progress)
+    }
+
+    /// The same, with at most `samples` more of each pixel.
+    ///
+    /// How a fixed number of samples is cut into rounds does not show in the picture. A render that stops by noise or
+    /// time looks at its error after each round, so there it does.
+    pub fn round_of(&mut self, samples: u32, progress: &dyn Progress) -> Result<bool, RenderError> {
+        let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
+        gathered.check()?;
+        let tasks = gathered.rounds.next(&self.world.settings, samples);
+        let start = Instant::now();
+        self.trace(&tasks, progress);
+        let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
+        gathered.seconds_tracing += start.elapsed().as_secs_f64();
+        gathered.check()?;
+        Ok(gathered.rounds.look(&self.world.settings, &gathered.film))
+    }
+
+    /// Renders round after round until nothing is left to do or `progress` asks to stop.
+    pub fn finish(&mut self, progress: &dyn Progress) -> Result<(), RenderError> {
+        while self.round(progress)? && !progress.cancelled() {}
+        Ok(())
+    }
+
+    /// Does the tasks; each thread takes the next one until none is left.
+    fn trace(&self, tasks: &[Task], progress: &dyn Progress) {
+        let Renderer { world, waves, gathered, .. } = self;
+        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let stop = || next.store(tasks.len(), Ordering::Relaxed);
+        self.pool.broadcast(|thread| {
+            let Ok(mut wave) = waves[thread.index()].lock() else { return };
+            let wave = wave.get_or_insert_with(|| Wave::new(world));
+            while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !progress.cancelled()) {
+                let tile = Tile::number(&world.settings, task.tile);
+                let Ok(mut sums) = gathered.lock().map(|mut all| all.film.take(task.tile)) else { return };
+                render_tile(world, wave, &tile, task.first..task.end, &mut sums);
+                let Ok(mut all) = gathered.lock() else { return };
+                all.film.give(task.tile, sums);
+                all.keep(task, wave);
+                if all.rounds.late() || wave.shading.failed() {
+                    stop();
+                }
+                drop(all);
+                progress.tiles(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
+            }
+        });
+    }
+
+    /// The picture so far; black where there is no sample yet.
+    pub fn picture(&self) -> Image {
+        let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
+        let settings = &self.world.settings;
+        let channels = if settings.alpha { 4 } else { 3 };
+        let pixels = all.film.picture(settings, 0..settings.halves(), channels);
+        Image { width: settings.width, height: settings.height, channels, pixels, about: self.about(&all) }
+    }
+
+    /// What is known of the picture so far.
+    fn about(&self, all: &Gathered) -> About {
+        let settings = &self.world.settings;
+        let taken = all.rounds.taken();
+        let paths =
+            |(number, samples): (usize, &u32)| u64::from(Tile::number(settings, number).pixels()) * u64::from(*samples);
+        About {
+            scene: self.world.scene.name.clone(),
+            samples: settings.samples,
+            taken: [taken.iter().copied().min().unwrap_or(0), taken.iter().copied().max().unwrap_or(0)],
+            noise: all.rounds.noise().filter(|_| settings.adapts()),
+            seed: settings.seed,
+            paths: taken.iter().enumerate().map(paths).sum(),
+            rays: all.rays,
+            seconds_preparing: self.seconds_preparing,
+            seconds_tracing: all.seconds_tracing,
+            reports: reports(&self.world.scene, all.reports.clone(), &all.dropped),
+        }
+    }
+
+    /// Starts the picture anew.
+    pub fn restart(&mut self) {
+        for wave in &mut self.waves {
+            match wave.get_mut() {
+                Ok(Some(wave)) => wave.shading.start_over(),
+                Ok(None) | Err(_) => *wave = Mutex::new(None),
+            }
+        }
+        self.gathered = Mutex::new(Gathered::new(&self.world, Instant::now()));
+    }
+
+    /// Looks through another camera; the picture starts anew.
+    pub fn set_camera(&mut self, camera: Camera) -> Result<(), RenderError> {
+        check_camera(&camera)?;
+        let scene = Scene { camera, ..self.world.scene.clone() };
+        self.remake(scene, self.world.settings.clone(), None);
+        Ok(())
+    }
+
+    /// Renders by other settings; the picture starts anew.
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), RenderError> {
+        settings.check().map_err(RenderError::Settings)?;
+        if settings.threads != self.world.settings.threads {
+            self.pool = pool(settings)?;
+        }
+        self.remake(self.world.scene.clone(), settings.clone(), None);
+        Ok(())
+    }
+
+    /// The index of the material of a name, the first one if there are several.
+    pub fn material(&self, name: &str) -> Option<usize> {
+        self.world.scene.materials.iter().position(|material| material.name == name)
+    }
+
+    /// Has another group shade the surfaces of a material; the picture starts anew.
+    ///
+    /// What depends on the group is renewed: the plan, emission, lights, the background and its table if they are of this
+    /// material.
+    pub fn set_material(&mut self, index: usize, group: Group) -> Result<(), RenderError> {
+        let mut scene = self.world.scene.clone();
+        let count = scene.materials.len();
+        let material = scene.materials.get_mut(index).ok_or(RenderError::Material { index, count })?;
+        material.surface = group;
+        let of_background = scene.background.is_some_and(|background| background.material as usize == index);
+        // A constant is found anew at once; it is the table that is worth keeping.
+        let sky = match &mut self.world.sky {
+            Sky::Shader { material, table } if !of_background => {
+                Some(Sky::Shader { material: *material, table: table.take() })
+            }
+            Sky::Shader { .. } | Sky::Constant(_) => None,
+        };
+        self.remake(scene, self.world.settings.clone(), sky);
+        Ok(())
+    }
+
+    /// Makes the world anew but for its hierarchy, and for its background where one is given.
+    fn remake(&mut self, scene: Scene, settings: Settings, sky: Option<Sky>) {
+        let start = Instant::now();
+        let accel = self.world.accel.clone();
+        self.world = self.pool.install(|| World::new(accel, scene, settings, sky));
+        self.seconds_preparing = start.elapsed().as_secs_f64();
+        self.waves = empty_waves(&self.pool);
+        self.gathered = Mutex::new(Gathered::new(&self.world, start));
+    }
+}
+
+fn check_camera(camera: &Camera) -> Result<(), RenderError> {
+    camera.flaw().map_or(Ok(()), |flaw| Err(RenderError::Camera(flaw)))
+}
+
+fn pool(settings: &Settings) -> Result<rayon::ThreadPool, RenderError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
+    pool.map_err(|e| RenderError::Threads(e.to_string()))
+}
+
+fn empty_waves(pool: &rayon::ThreadPool) -> Vec<Mutex<Option<Wave>>> {
+    (0..pool.current_num_threads()).map(|_| Mutex::new(None)).collect()
+}
+
+/// Each report once, in an order that does not depend on threads.
+///
+/// Differs from OSL: what shaders print while rendering comes out sorted and each text once, since lanes, tiles and
+/// threads have no order of their own. `velour tree` prints as written.
+fn reports(scene: &Scene, mut reports: Vec<Report>, dropped: &Dropped) -> Vec<Report> {
+    reports.sort_by_key(Report::key);
+    reports.dedup_by_key(|report| report.key());
+    if dropped.count > 0 {
+        let material = dropped.material.checked_sub(1).and_then(|m| scene.materials.get(m));
+        let (file, name) = material.map_or((String::new(), "?"), |m| (m.place.to_string(), m.name.as_str()));
+        let what = "gave light that is not a finite number";
+        let text = format!("shader group `{name}` {what}; {} contributions were dropped", dropped.count);
+        reports.push(Report::mistake(ReportPlace { file, ..ReportPlace::default() }, text));
+    }
+    reports
+}
+
+/// Renders `scene` in one go; tells `progress` of every finished tile.
+pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Image, RenderError> {
+    let mut renderer = Renderer::new(scene, settings)?;
+    renderer.finish(progress)?;
+    Ok(renderer.picture())
+}

@@ -1,0 +1,70 @@
+//! The loop: which stage follows which, bounce after bounce, and how the samples of a tile become sums.
+
+use super::film::TileSums;
+use super::path::Path;
+use super::stages::{background::background, camera, globals::show_globals, intersect::intersect};
+use super::stages::{light::sample_light, scatter::scatter, shade::shade, shadow::trace_shadows, sort::sort};
+use super::tile::Tile;
+use super::wave::Wave;
+use super::world::World;
+use std::ops::Range;
+
+/// Follows all paths of the wave to their end.
+fn trace(world: &World, wave: &mut Wave) {
+    let mut bounce = 0;
+    while !wave.active.is_empty() {
+        intersect(world, wave);
+        background(world, wave);
+        sort(world, wave, bounce);
+        for batch in 0..wave.sorted.batches.len() {
+            wave.take(batch, bounce);
+            if world.settings.show_globals != 0 {
+                show_globals(world, wave);
+                continue;
+            }
+            shade(world, wave);
+            if bounce < world.settings.max_bounces && world.plan.materials[wave.lanes.material].scatters {
+                wave.lanes.gather(&wave.paths);
+                sample_light(world, wave);
+                scatter(world, wave);
+            }
+        }
+        trace_shadows(world, wave);
+        wave.advance();
+        bounce += 1;
+    }
+}
+
+/// Adds `samples` of each of the tile's pixels to `sums`.
+///
+/// Whole pixels are traced at a time when few samples make a wave, else as many samples of all pixels as fill it. Sums
+/// take sample after sample, and of each the pixels in order, which is the order of the paths in neither.
+pub fn render_tile(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u32>, sums: &mut TileSums) {
+    let (halves, wave_size) = (world.settings.halves(), world.settings.wave_size.max(1) as u32);
+    sums.open(tile, halves);
+    let count = tile.pixels();
+    let per_pixel = (wave_size / count).clamp(1, samples.len().max(1) as u32);
+    let pixels_at_once = (wave_size / per_pixel).clamp(1, count);
+    for first_sample in samples.clone().step_by(per_pixel as usize) {
+        let range = first_sample..samples.end.min(first_sample + per_pixel);
+        for first in (0..count).step_by(pixels_at_once as usize) {
+            let end = count.min(first + pixels_at_once);
+            wave.clear();
+            for pixel in first..end {
+                camera::start(world, wave, tile.x + pixel % tile.width, tile.y + pixel / tile.width, range.clone());
+            }
+            trace(world, wave);
+            for sample in range.clone() {
+                let half = sample as usize % halves;
+                let mut path = (sample - range.start) as usize;
+                for pixel in first..end {
+                    let at = [pixel % tile.width, pixel / tile.width];
+                    let Path { radiance, alpha, .. } = wave.paths[path];
+                    sums.add(half, at, wave.positions[path], radiance.to_array(), alpha);
+                    path += range.len();
+                }
+            }
+        }
+        range.for_each(|sample| sums.count(sample as usize % halves));
+    }
+}
