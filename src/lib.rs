@@ -77,8 +77,15 @@
 //! Decision (2026-11-22): `bsdf` and `closure` stand above `exec`, because the machine fills the tree that `closure`
 //! owns, and `closure` evaluates models of `bsdf`, instead of `exec` owning a tree that others read.
 
+// A unit test may hold our functions against those of the platform.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+/// The vectors of the interface, in the version that it is made for.
+pub use glam;
+
 pub mod bsdf;
 pub mod check;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod closure;
 pub mod compile;
@@ -86,8 +93,18 @@ pub mod exec;
 pub mod ir;
 pub mod lang;
 pub mod math;
+// Its truths are f64, and no picture depends on it.
+#[cfg(feature = "measure")]
+#[allow(clippy::disallowed_methods)]
 pub mod measure;
 pub mod ops;
 pub mod optimize;
+#[cfg(feature = "render")]
 pub mod render;
+#[cfg(feature = "render")]
 pub mod scene;
+
+/// The blocks of the README, as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -86,7 +86,7 @@ fn increments_and_assignments_have_values() {
         (r#"float f = 1.5; printf("%g %g", f++, f);"#, "1.5 2.5"),
         (r#"int a, b, c; a = b = c = 4; printf("%d %d %d", a, b, c);"#, "4 4 4"),
         (r#"int i = 1; int j = (i = 5) + i; printf("%d", j);"#, "10"),
-        (r#"int i = 1; int j = i + (i = 5); printf("%d", j);"#, "6"),
+        (r#"int i = 1; int j = i + (i = 5); printf("%d", j);"#, "10"),
         (r#"color c = color(1, 2, 3); c[1]++; c.b += 2; c[0] *= 4; printf("%g", c);"#, "4 3 5"),
         (r#"vector c = vector(1, 2, 3); c = vector(c.z, c.x, c.y); printf("%g", c);"#, "3 1 2"),
         (r#"int a[3] = {1, 2, 3}; int i = 0; a[i++] += 10; printf("%d %d %d, %d", a[0], a[1], a[2], i);"#, "11 2 3, 1"),
@@ -282,11 +282,11 @@ fn indices_outside_are_reported_and_clamped() {
     cases(&[
         (
             r#"int a[3] = {1, 2, 3}; int i = 5; printf("%d\n", a[i + (int)u]);"#,
-            "Mistake \"test.osl:1:73: error: index 5 is outside 0..2\"\n3\n",
+            "Mistake \"test.osl:1:62: error: index 5 is outside 0..2\"\n3\n",
         ),
         (
             r#"int a[3] = {1, 2, 3}; a[-1 - (int)u] = 7; printf("%d\n", a[0]);"#,
-            "Mistake \"test.osl:1:48: error: index -1 is outside 0..2\"\n7\n",
+            "Mistake \"test.osl:1:36: error: index -1 is outside 0..2\"\n7\n",
         ),
     ]);
 }

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 use velour::exec::Group;
-use velour::scene::{GroupCompiler, GroupSpec, ParamType, Place, Scene, SceneError, Shape, Usage, Values, parse_group};
+use velour::scene::{
+    GroupCompiler, GroupSpec, ParamType, Place, Scene, SceneError, SceneProblem, ShaderFiles, Shape, Usage, Values,
+    parse_group,
+};
 
 /// Knows every shader but `missing`, and keeps nothing.
 struct Anything;
@@ -10,7 +13,9 @@ struct Anything;
 impl GroupCompiler for Anything {
     fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
         match spec.layers.iter().find(|l| l.shader == "missing") {
-            Some(layer) => Err(SceneError::at(layer.place.clone(), "shader `missing` is not found")),
+            Some(layer) => {
+                Err(SceneError::at(layer.place.clone(), SceneProblem::ShaderNotFound { shader: layer.shader.clone() }))
+            }
             None => {
                 Ok(velour::compile::compile("surface any() { Ci = diffuse(N); }").unwrap().group().build().unwrap())
             }
@@ -212,7 +217,7 @@ fn group_text_is_read_as_osl_writes_it() {
         param float st.f 2; shader noise "n 1", shader "mat" l2
         connect"#;
     let error = parse_group(text, &at).unwrap_err();
-    assert!(error.message.contains("`;` expected, found `connect`"), "{error}");
+    assert!(error.problem.to_string().contains("`;` expected, found `connect`"), "{error}");
     let text =
         text.replace("l2\n", "l2;\n").replace("connect", "connect \"n 1\".out l2.st.f; connect \"n 1\".c[1] l2.k");
     let group = parse_group(&text, &at).unwrap();
@@ -334,4 +339,67 @@ fn flakes_of_two_seeds_have_none_in_common_however_many() {
     let (one, two) = (corners(1), corners(2));
     assert!(one.len() > 199_000 && two.len() > 199_000, "blocks of one seed differ too");
     assert!(one.is_disjoint(&two));
+}
+
+#[test]
+fn every_problem_has_a_code_of_its_own() {
+    let group =
+        |text: &str| format!("<World><ShaderGroup>{text}</ShaderGroup><Sphere center=\"0,0,0\" radius=\"1\"/></World>");
+    let element = |text: &str| format!("<World><ShaderGroup>shader matte l1;</ShaderGroup>{text}</World>");
+    let cases = [
+        ("none.xml".to_owned(), "S0101"),
+        ("<World".to_owned(), "S0102"),
+        ("<Scene/>".to_owned(), "S0103"),
+        ("<World/>".to_owned(), "S0104"),
+        (element("<Spere/>"), "S0201"),
+        (element("text"), "S0202"),
+        (element(r#"<Sphere centre="0,0,0"/>"#), "S0203"),
+        (element(r#"<Sphere center="0,0,0"/>"#), "S0204"),
+        (element(r#"<Sphere center="0,0" radius="1"/>"#), "S0205"),
+        (r#"<World><Sphere center="0,0,0" radius="1"/></World>"#.to_owned(), "S0206"),
+        (element(r#"<Camera dir="0,0,0"/>"#), "S0301"),
+        (element(r#"<Quad corner="0,0,0" edge_x="1,0,0" edge_y="2,0,0"/>"#), "S0302"),
+        (element(r#"<Flakes low="1,1,1" high="0,0,0" size="1"/>"#), "S0303"),
+        (element(r#"<Weave corner="0,0,0" edge_x="1,0,0" edge_y="0,0,1" warp="4096" weft="4096"/>"#), "S0304"),
+        (element(r#"<Model filename="none.obj"/>"#), "S0401"),
+        (element(r#"<Model filename="Cargo.toml"/>"#), "S0402"),
+        (group("sader matte l1;"), "S0501"),
+        (group("shader matte l1 l2;"), "S0502"),
+        (group("shader ;"), "S0503"),
+        (group("shader \"matte l1;"), "S0504"),
+        (group("param colour Cs 1 1 1; shader matte l1;"), "S0505"),
+        (group("float[0] k 1; shader matte l1;"), "S0506"),
+        (group("float k 1 [[ int lock = 1 ]]; shader matte l1;"), "S0507"),
+        (group("float k 1 [[ int lockgeom ]]; shader matte l1;"), "S0508"),
+        (group("float k 1 [[ int lockgeom = 1 ; shader matte l1;"), "S0509"),
+        (group("shader matte a; shader matte b; connect a b.Cs;"), "S0510"),
+        (group(""), "S0601"),
+        (group("shader matte l1; float k 1;"), "S0602"),
+        (group("shader matte a; shader matte b; connect c.Cs b.Cs;"), "S0603"),
+        (group("shader matte a; shader matte b; connect b.Cs a.Cs;"), "S0604"),
+        (group("shader missing l1;"), "S0605"),
+        (group("shader wrong l1;"), "S0606"),
+        (group("float Cx 1; shader matte l1;"), "S0607"),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("wrong.osl"), "surface wrong( { }").unwrap();
+    let search = [PathBuf::from(env!("CARGO_MANIFEST_DIR")), folder.path().to_owned()];
+    let mut seen = std::collections::BTreeSet::new();
+    for (text, code) in &cases {
+        let error = Scene::load(text, &search, &ShaderFiles::default()).map(|_| ()).unwrap_err();
+        assert_eq!(error.problem.code(), *code, "{text}\n{error}");
+        assert!(seen.insert(*code) && error.place.is_some() != (*code == "S0101"), "{error:?}");
+    }
+    let inner = |text: &str| match Scene::load(text, &search, &ShaderFiles::default()).map(|_| ()).unwrap_err().problem
+    {
+        SceneProblem::Group(error) => error.problem.code(),
+        SceneProblem::Shader { error, .. } => match &*error {
+            velour::compile::CompileError::Text { diagnostics, .. } => diagnostics.list[0].code,
+            other => panic!("{other}"),
+        },
+        other => panic!("{other}"),
+    };
+    assert_eq!(inner(&group("float Cx 1; shader matte l1;")), "G0201");
+    assert_eq!(inner(&group("string Cs x; shader matte l1;")), "G0301");
+    assert!(inner(&group("shader wrong l1;")).starts_with("E0"), "the messages of the shader are there");
 }

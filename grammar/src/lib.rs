@@ -29,11 +29,11 @@ pub mod span;
 mod token;
 mod tree;
 
-lalrpop_util::lalrpop_mod!(
-    // Generated text: its style is not ours to judge.
-    #[allow(clippy::all, missing_docs, unused, unreachable_pub)]
-    osl
-);
+// Generated text: its style is not ours to judge.
+#[rustfmt::skip]
+#[allow(clippy::all, missing_docs, unused, unreachable_pub)]
+#[path = "../generated/osl.rs"]
+mod osl;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use render::Format;

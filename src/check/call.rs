@@ -1,22 +1,15 @@
 //! Calls: what a name may mean, and the checked call of what fits best.
 
+use super::candidate::{Candidate, param_type};
 use super::context::{Checker, Signature, Symbol};
 use super::expr::nearest;
 use super::rank::{better_overload, rank_type, same_storage, score_type};
 use super::typed::{Argument, Expr, ExprKind, FunctionId};
 use crate::lang::builtins::{self, Formal, NOT_YET};
-use crate::lang::closures::{ClosureId, Model, ParamKind, ParamSpec};
-use crate::lang::types::{Base, Length, Type};
+use crate::lang::closures::{ClosureId, Model, ParamSpec};
+use crate::lang::types::{Length, Type};
 use velour_grammar::ast::{self, Ident};
 use velour_grammar::{Diagnostic, Span};
-
-/// Something a call may mean.
-#[derive(Clone)]
-pub(super) enum Candidate {
-    User(FunctionId),
-    Builtin(&'static str, &'static builtins::Signature),
-    Closure(ClosureId),
-}
 
 impl Checker<'_> {
     pub(super) fn check_call(&mut self, name: &Ident, args: &[ast::Expr], expected: Option<&Type>, span: Span) -> Expr {
@@ -66,50 +59,6 @@ impl Checker<'_> {
                 Expr::error(span)
             }
         }
-    }
-
-    /// What a call of this name may mean. A function hides builtins and outer functions of the same parameters; inside
-    /// its own body it stands back for them, so that it can build on what it replaces.
-    fn candidates(&self, name: &str) -> Vec<Candidate> {
-        let mut users = self.functions_named(name);
-        let mut all = self.visible(name, &users);
-        if let Some(own) = self.inside.filter(|own| users.contains(own)) {
-            users.retain(|id| *id != own);
-            let others = self.visible(name, &users);
-            let hidden = self.formals_text(&Candidate::User(own));
-            if others.iter().any(|other| self.formals_text(other) == hidden) {
-                all = others;
-            }
-        }
-        all
-    }
-
-    fn visible(&self, name: &str, users: &[FunctionId]) -> Vec<Candidate> {
-        let alone = users.is_empty();
-        let users = users.iter().copied().map(Candidate::User);
-        let builtin = builtins::static_name(name).unwrap_or_default();
-        let builtins = builtins::signatures(name).unwrap_or_default().iter().map(|s| Candidate::Builtin(builtin, s));
-        let closures = self.closures.named(name).map(|(id, _)| Candidate::Closure(id));
-        let everything = users.chain(builtins).chain(closures);
-        if alone {
-            return everything.collect();
-        }
-        let mut all: Vec<Candidate> = Vec::new();
-        let mut seen: Vec<(String, Option<Type>)> = Vec::new();
-        for candidate in everything {
-            let user = matches!(candidate, Candidate::User(_));
-            let formals = self.formals_text(&candidate);
-            // Overloads on the return type stand side by side; a builtin gives way to any function of its parameters.
-            let returns = Some(self.returns_of(&candidate));
-            let hidden = seen.iter().any(|(f, r)| *f == formals && (!user || *r == returns));
-            if user {
-                seen.push((formals, returns));
-            }
-            if !hidden {
-                all.push(candidate);
-            }
-        }
-        all
     }
 
     fn unknown_function(&mut self, name: &Ident) {
@@ -183,13 +132,6 @@ impl Checker<'_> {
         Some(chosen)
     }
 
-    fn span_of(&self, candidate: &Candidate) -> Option<Span> {
-        match candidate {
-            Candidate::User(id) => Some(self.signatures[id.0 as usize].span),
-            _ => None,
-        }
-    }
-
     fn ambiguous(&mut self, name: &Ident, spans: &[Span], fatal: bool) {
         let message = format!("the call of `{}` is ambiguous", name.name);
         let diagnostic = if fatal {
@@ -199,14 +141,6 @@ impl Checker<'_> {
         };
         let diagnostic = spans.iter().fold(diagnostic, |d, &span| d.also(span, "this one fits"));
         self.report(diagnostic.help("cast an argument, or the result, to the type that is meant"));
-    }
-
-    fn returns_of(&self, candidate: &Candidate) -> Type {
-        match candidate {
-            Candidate::User(id) => self.signatures[id.0 as usize].returns.clone(),
-            Candidate::Builtin(_, signature) => signature.returns.clone(),
-            Candidate::Closure(_) => Type::CLOSURE,
-        }
     }
 
     fn call_user(&mut self, id: FunctionId, args: &[ast::Expr], values: Vec<Expr>, span: Span) -> Expr {
@@ -363,29 +297,6 @@ impl Checker<'_> {
         let texts: Vec<String> = candidates.iter().take(8).map(|c| self.formals_text(c)).collect();
         self.report(diagnostic.help(format!("it takes {}", texts.join(" or "))));
     }
-
-    fn formals_text(&self, candidate: &Candidate) -> String {
-        let list: Vec<String> = match candidate {
-            Candidate::User(id) => {
-                let formals = &self.signatures[id.0 as usize].formals;
-                formals.iter().map(|(ty, out)| if *out { format!("output {ty}") } else { ty.to_string() }).collect()
-            }
-            Candidate::Builtin(_, signature) => {
-                let text = |formal: &Formal| match formal {
-                    Formal::Type(ty) => ty.to_string(),
-                    Formal::Any => "any".to_owned(),
-                    Formal::AnyArray => "any[]".to_owned(),
-                };
-                let more = if signature.variadic || signature.options { Some("…".to_owned()) } else { None };
-                signature.formals.iter().map(|(formal, _)| text(formal)).chain(more).collect()
-            }
-            Candidate::Closure(id) => {
-                let spec = self.closures.get(*id);
-                spec.params.iter().map(|p| format!("{} {}", param_type(p.kind), p.name)).collect()
-            }
-        };
-        format!("({})", list.join(", "))
-    }
 }
 
 /// What is wrong with a literal that is none of the strings a parameter may be.
@@ -402,17 +313,4 @@ fn is_literally(value: &Expr, wanted: f32) -> bool {
         ExprKind::Float(given) => given == wanted,
         _ => false,
     }
-}
-
-/// The language's type of a closure parameter.
-pub(super) fn param_type(kind: ParamKind) -> Type {
-    Type::of(match kind {
-        ParamKind::Float => Base::Float,
-        ParamKind::Int => Base::Int,
-        ParamKind::Color => Base::Color,
-        ParamKind::Vector => Base::Vector,
-        ParamKind::Normal => Base::Normal,
-        ParamKind::String => Base::String,
-        ParamKind::Closure => Base::Closure,
-    })
 }

@@ -9,6 +9,7 @@
 //! calls at run time, because then values bind without moves and constants fold through calls.
 
 mod call;
+mod candidate;
 pub mod codes;
 mod context;
 mod convert;

@@ -3,7 +3,7 @@
 //! Overloads are ranked as OSL ranks them: an exact argument counts most, then int to float, array length, triple to
 //! triple, and any other conversion; the sums are compared, and a tie goes to the best return type.
 
-use super::call::{Candidate, param_type};
+use super::candidate::{Candidate, param_type};
 use super::context::Checker;
 use super::convert::{assignable, equivalent, is_number};
 use super::typed::{Argument, Expr, ExprKind};

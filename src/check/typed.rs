@@ -245,6 +245,14 @@ impl Place {
 }
 
 impl Argument {
+    /// The expression of an argument that is only read.
+    pub fn read(&self) -> Option<&Expr> {
+        match self {
+            Argument::In(expr) => Some(expr),
+            Argument::Out(_) => None,
+        }
+    }
+
     /// The type of the argument.
     pub fn ty(&self) -> &Type {
         match self {

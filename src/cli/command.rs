@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::speak::tell;
-use super::{chart, check, info, render, tree, verify};
+use super::{chart, check, info, new, render, tree, verify};
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -16,6 +16,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Write a first scene and shader
+    New(new::NewArgs),
     /// Render a scene to an image
     Render(render::RenderArgs),
     /// Check shaders and report every mistake
@@ -41,6 +43,7 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match arguments.command {
+        Command::New(args) => new::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Tree(args) => tree::run(&args),

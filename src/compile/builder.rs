@@ -1,11 +1,10 @@
 //! Building a group: layers, parameters, connections.
 
-use super::Shader;
-use super::error::{GroupError, GroupSubject};
+use super::error::{GroupError, GroupProblem, GroupSubject};
 use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
+use super::shader::Shader;
 use crate::exec::{Group, Locate, ReportPlace};
-use crate::ir::lower::value::SPANS_PER_LAYER;
-use crate::ir::lower::{Binding, Layer, LowerOptions, lower};
+use crate::ir::lower::{Binding, Layer, LowerOptions, SPANS_PER_LAYER, lower};
 use crate::lang::closures::ClosureTable;
 use crate::lang::types::{Base, Type};
 use crate::optimize::{OptimizeOptions, optimize};
@@ -100,7 +99,7 @@ impl GroupBuilder {
     fn try_connect(&mut self, from: (&str, &str), to: (&str, &str)) -> Result<(), GroupError> {
         let at = |name: &str| self.layers.iter().position(|layer| layer.name == name);
         let missing = |name: &str| GroupError {
-            message: format!("there is no layer `{name}`"),
+            problem: GroupProblem::NoLayer { layer: name.to_owned() },
             help: "declare the shader of a layer before connecting it".to_owned(),
             subject: GroupSubject::Layer(name.to_owned()),
         };
@@ -108,18 +107,15 @@ impl GroupBuilder {
         let target = at(to.0).ok_or_else(|| missing(to.0))?;
         if source >= target {
             return Err(GroupError {
-                message: format!("layer `{}` does not come before layer `{}`", from.0, to.0),
+                problem: GroupProblem::LayerOrder { source: from.0.to_owned(), target: to.0.to_owned() },
                 help: "declare the layer that is read first".to_owned(),
                 subject: GroupSubject::Layer(from.0.to_owned()),
             });
         }
         let (given, wanted) = (find_type(&self.layers[source], from.1)?, find_type(&self.layers[target], to.1)?);
         if !connects(&given, &wanted) {
-            return Err(param_error(
-                &self.layers[target],
-                to.1,
-                format!("a {given} cannot feed the {wanted} `{}`", to.1),
-            ));
+            let problem = GroupProblem::CannotFeed { path: to.1.to_owned(), wanted, given };
+            return Err(param_error(&self.layers[target], to.1, problem));
         }
         self.layers[target].bindings.push((to.1.to_owned(), Binding::Connection(source, from.1.to_owned())));
         Ok(())
@@ -146,14 +142,21 @@ impl GroupBuilder {
         if let Some(error) = self.error {
             return Err(error);
         }
-        let program = optimize(lower(&self.layers, self.lower), self.optimize);
+        let program = optimize(lower(&self.layers, self.lower), &self.closures, self.optimize);
         let last = self.layers.last().map_or(String::new(), |layer| layer.name.clone());
         let names = self.layers.iter().map(|layer| (layer.shader.name.clone(), layer.name.clone())).collect();
         Group::new(program, self.closures, locator(self.sources, names)).map_err(|error| GroupError {
-            message: format!("the shader cannot be run: {error}"),
+            problem: GroupProblem::CannotRun { error },
             help: "this is a limit of the machine, or a mistake of the compiler that should be reported".to_owned(),
             subject: GroupSubject::Layer(last),
         })
+    }
+}
+
+impl Shader {
+    /// A group of this shader alone.
+    pub fn group(&self) -> GroupBuilder {
+        GroupBuilder::new(self.closures.clone()).layer(self.name(), self)
     }
 }
 

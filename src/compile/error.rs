@@ -1,10 +1,13 @@
-//! Why there is no shader, or no group.
+//! Why there is no shader, or no group: each kind with a stable code.
 
+use crate::ir::verify::VerifyError;
+use crate::lang::types::Type;
 use std::fmt;
 use velour_grammar::{Diagnostics, Format, Sources};
 
 /// Why a shader could not be made.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum CompileError {
     /// Its text is wrong.
     Text {
@@ -33,21 +36,157 @@ impl fmt::Display for CompileError {
     }
 }
 
-impl std::error::Error for CompileError {}
+impl std::error::Error for CompileError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            CompileError::Text { .. } => None,
+            CompileError::File { error, .. } => Some(error),
+        }
+    }
+}
 
 /// Why a group could not be made: what is wrong with a parameter or a connection.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GroupError {
-    /// What is wrong.
-    pub message: String,
+    /// What is wrong; its text is one clause.
+    pub problem: GroupProblem,
     /// The way out.
     pub help: String,
     /// What is wrong, by the names it was given with; a host that knows where those were written can name the place.
     pub subject: GroupSubject,
 }
 
+/// What is wrong with a parameter or a connection of a group.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum GroupProblem {
+    /// G0101: a connection of a layer that is not there.
+    NoLayer {
+        /// Its name.
+        layer: String,
+    },
+    /// G0102: a connection from a later layer to an earlier one, or to itself.
+    LayerOrder {
+        /// Where it begins.
+        source: String,
+        /// Where it ends.
+        target: String,
+    },
+    /// G0201: the shader has no such parameter.
+    NoParam {
+        /// The shader.
+        shader: String,
+        /// The parameter as given.
+        path: String,
+    },
+    /// G0202: the path to a part of a parameter is not written as one.
+    NotAPath {
+        /// The parameter as given.
+        path: String,
+    },
+    /// G0203: the parameter has no such part.
+    NoPart {
+        /// The parameter as given.
+        path: String,
+        /// Why not.
+        reason: String,
+    },
+    /// G0301: a value of another kind than the parameter takes.
+    WrongType {
+        /// The parameter as given.
+        path: String,
+        /// What it takes.
+        wanted: Type,
+        /// What was given, such as `a string`.
+        given: String,
+    },
+    /// G0302: more values than the parameter holds.
+    TooMany {
+        /// The parameter as given.
+        path: String,
+        /// What it takes.
+        wanted: Type,
+        /// How many numbers or strings it holds.
+        room: usize,
+        /// What was given, such as `4 numbers`.
+        given: String,
+    },
+    /// G0303: a number that stands for an int and is none.
+    NotAnInt {
+        /// The parameter as given.
+        path: String,
+        /// What it takes.
+        wanted: Type,
+        /// The number.
+        value: f64,
+    },
+    /// G0304: an output whose type the parameter does not take.
+    CannotFeed {
+        /// The parameter as given.
+        path: String,
+        /// What it takes.
+        wanted: Type,
+        /// What the output is.
+        given: Type,
+    },
+    /// G0401: the program of the group is more than the machine takes, or breaks another promise.
+    CannotRun {
+        /// Which.
+        error: VerifyError,
+    },
+}
+
+impl GroupProblem {
+    /// A stable code, for programs.
+    pub fn code(&self) -> &'static str {
+        match self {
+            GroupProblem::NoLayer { .. } => "G0101",
+            GroupProblem::LayerOrder { .. } => "G0102",
+            GroupProblem::NoParam { .. } => "G0201",
+            GroupProblem::NotAPath { .. } => "G0202",
+            GroupProblem::NoPart { .. } => "G0203",
+            GroupProblem::WrongType { .. } => "G0301",
+            GroupProblem::TooMany { .. } => "G0302",
+            GroupProblem::NotAnInt { .. } => "G0303",
+            GroupProblem::CannotFeed { .. } => "G0304",
+            GroupProblem::CannotRun { .. } => "G0401",
+        }
+    }
+}
+
+impl fmt::Display for GroupProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            GroupProblem::NoLayer { layer } => write!(f, "there is no layer `{layer}`"),
+            GroupProblem::LayerOrder { source, target } => {
+                write!(f, "layer `{source}` does not come before layer `{target}`")
+            }
+            GroupProblem::NoParam { shader, path } => write!(f, "shader `{shader}` has no parameter `{path}`"),
+            GroupProblem::NotAPath { path } => {
+                write!(f, "`{path}` is no part of a parameter: write `name.field` or `name[0]`")
+            }
+            GroupProblem::NoPart { path, reason } => write!(f, "there is no `{path}`: {reason}"),
+            GroupProblem::WrongType { path, wanted, given } => {
+                write!(f, "parameter `{path}` is {}, not {given}", wanted.named())
+            }
+            GroupProblem::TooMany { path, wanted, room, given } => {
+                write!(f, "parameter `{path}` is {} and holds {room}, not {given}", wanted.named())
+            }
+            GroupProblem::NotAnInt { path, wanted, value } => {
+                write!(f, "parameter `{path}` is {}, and {value} is no int", wanted.named())
+            }
+            GroupProblem::CannotFeed { path, wanted, given } => {
+                write!(f, "a {given} cannot feed the {wanted} `{path}`")
+            }
+            GroupProblem::CannotRun { error } => write!(f, "the shader cannot be run: {error}"),
+        }
+    }
+}
+
 /// What a [`GroupError`] is about.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum GroupSubject {
     /// A parameter of a layer.
     Param {
@@ -62,7 +201,7 @@ pub enum GroupSubject {
 
 impl fmt::Display for GroupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error: {}\n  help: {}", self.message, self.help)
+        write!(f, "error: {}\n  help: {}", self.problem, self.help)
     }
 }
 

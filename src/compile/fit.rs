@@ -1,6 +1,6 @@
 //! What fits a parameter: the paths that name one, the values and the connections it takes.
 
-use super::error::{GroupError, GroupSubject};
+use super::error::{GroupError, GroupProblem, GroupSubject};
 use crate::ir::lower::{Binding, Layer};
 use crate::lang::path::{part, root, steps};
 use crate::lang::types::{Base, Element, Length, Type};
@@ -10,18 +10,17 @@ pub(super) fn find_type(layer: &Layer, path: &str) -> Result<Type, GroupError> {
     let variables = &layer.shader.variables;
     let mut params = layer.shader.params.iter().map(|p| (p, &variables[p.var.0 as usize]));
     let Some((param, variable)) = params.find(|(_, v)| v.name == root(path)) else {
-        let message = format!("shader `{}` has no parameter `{path}`", layer.shader.name);
-        return Err(param_error(layer, path, message));
+        let shader = layer.shader.name.clone();
+        return Err(param_error(layer, path, GroupProblem::NoParam { shader, path: path.to_owned() }));
     };
     let Some(steps) = steps(path) else {
-        let message = format!("`{path}` is no part of a parameter: write `name.field` or `name[0]`");
-        return Err(param_error(layer, path, message));
+        return Err(param_error(layer, path, GroupProblem::NotAPath { path: path.to_owned() }));
     };
     let mut ty = variable.ty.clone();
     if param.open {
         ty.length = open_length(layer, &variable.name, &ty, steps.is_empty());
     }
-    let wrong = |reason| param_error(layer, path, format!("there is no `{path}`: {reason}"));
+    let wrong = |reason| param_error(layer, path, GroupProblem::NoPart { path: path.to_owned(), reason });
     steps.iter().try_fold(ty, |ty, step| part(&ty, step)).map_err(wrong)
 }
 
@@ -51,17 +50,17 @@ pub(super) fn checked_binding(layer: &Layer, name: &str, binding: &Binding) -> R
     };
     let what = if matches!(binding, Binding::Numbers(_)) { ("numbers", "numbers") } else { ("a string", "strings") };
     if !fits {
-        return Err(param_error(layer, name, format!("parameter `{name}` is {}, not {}", ty.named(), what.0)));
+        let given = what.0.to_owned();
+        return Err(param_error(layer, name, GroupProblem::WrongType { path: name.to_owned(), wanted: ty, given }));
     }
     if let Some(room) = capacity(&ty).filter(|room| count > *room) {
-        let message = format!("parameter `{name}` is {} and holds {room}, not {count} {}", ty.named(), what.1);
-        return Err(param_error(layer, name, message));
+        let given = format!("{count} {}", what.1);
+        return Err(param_error(layer, name, GroupProblem::TooMany { path: name.to_owned(), wanted: ty, room, given }));
     }
     if let Binding::Numbers(numbers) = binding
-        && let Some(wrong) = not_an_int(&ty, &mut numbers.iter())
+        && let Some(value) = not_an_int(&ty, &mut numbers.iter())
     {
-        let message = format!("parameter `{name}` is {}, and {wrong} is no int", ty.named());
-        return Err(param_error(layer, name, message));
+        return Err(param_error(layer, name, GroupProblem::NotAnInt { path: name.to_owned(), wanted: ty, value }));
     }
     Ok(())
 }
@@ -112,8 +111,11 @@ pub(super) fn checked_type(layer: &Layer, name: &str, written: &Type) -> Result<
         (_, Base::Float) => ty.is_array() && given != Base::String,
         _ => false,
     };
-    let message = || format!("parameter `{name}` is {}, not {}", ty.named(), written.named());
-    if suits { Ok(()) } else { Err(param_error(layer, name, message())) }
+    if suits {
+        return Ok(());
+    }
+    let problem = GroupProblem::WrongType { path: name.to_owned(), wanted: ty, given: written.named() };
+    Err(param_error(layer, name, problem))
 }
 
 /// May an output of one type feed a parameter of another?
@@ -130,7 +132,7 @@ pub(super) fn connects(from: &Type, to: &Type) -> bool {
 }
 
 /// An error about a parameter, with the names of those there are.
-pub(super) fn param_error(layer: &Layer, name: &str, message: String) -> GroupError {
+pub(super) fn param_error(layer: &Layer, name: &str, problem: GroupProblem) -> GroupError {
     let shader = &layer.shader;
     let names: Vec<&str> = shader.params.iter().map(|p| shader.variables[p.var.0 as usize].name.as_str()).collect();
     let help = if names.is_empty() {
@@ -139,7 +141,7 @@ pub(super) fn param_error(layer: &Layer, name: &str, message: String) -> GroupEr
         format!("its parameters are {}", names.join(", "))
     };
     let subject = GroupSubject::Param { layer: layer.name.clone(), name: name.to_owned() };
-    GroupError { message, help, subject }
+    GroupError { problem, help, subject }
 }
 
 #[cfg(test)]
@@ -161,7 +163,7 @@ mod tests {
         let (source, shader) = (compiler.compile("a.osl", source).unwrap(), compiler.compile("b.osl", SHAPES).unwrap());
         let builder = GroupBuilder::new(compiler.closures.clone());
         let builder = builder.layer("source", &source).layer("shapes", &shader);
-        let group = set(builder).build().map_err(|error| error.message)?;
+        let group = set(builder).build().map_err(|error| error.problem.to_string())?;
         let mut machine = Machine::new();
         machine.shade(&group, &Points::new(1));
         Ok(machine

@@ -22,6 +22,33 @@ impl Run<'_> {
         (wanted.max(0) as usize).min(len.saturating_sub(1) as usize)
     }
 
+    /// The component each lane wants, kept inside.
+    pub(super) fn clamp_index(&mut self, len: u32, dst: Reg, index: Reg, span: Span) {
+        let last = len.saturating_sub(1) as i32;
+        let mut out = std::mem::take(&mut self.regs.ints[dst.0 as usize]);
+        let column = self.regs.i(index);
+        let mut inside = true;
+        if column.len() == 1 {
+            out.fill(column[0].clamp(0, last));
+            inside = column[0] == out[0];
+        } else {
+            for (clamped, &wanted) in out.iter_mut().zip(column) {
+                *clamped = wanted.clamp(0, last);
+                inside &= *clamped == wanted;
+            }
+        }
+        let lanes = out.len();
+        self.regs.ints[dst.0 as usize] = out;
+        if inside {
+            return;
+        }
+        // Where one number stands for all lanes, one that is here reports it.
+        let first = if lanes == 1 { self.first_active() } else { 0 };
+        (first..first + lanes).for_each(|lane| {
+            self.checked(index, lane, len, span);
+        });
+    }
+
     pub(super) fn array_get(&mut self, dst: Reg, array: ArrayId, component: u32, index: Reg, span: Span) {
         let info = self.group.program.arrays[array.0 as usize];
         if info.len == 0 {

@@ -17,6 +17,7 @@ impl Run<'_> {
             Routine::Smooth(function) => self.float_lanes(dst, src, |a, out| smooth::value(*function, a, out)),
             Routine::Slope(function) => self.float_lanes(dst, src, |a, out| smooth::change(*function, a, out)),
             Routine::SpaceMatrix => self.space_matrix(dst, src, span),
+            Routine::ClampIndex(len) => self.clamp_index(*len, dst[0], src[0], span),
             Routine::HashInt => self.int_lanes(dst, src, |a| hash::hash_int(a.i(0))),
             Routine::HashFloats(count) => self.int_lanes(dst, src, |a| match count {
                 1 => hash::hash_float(a.f(0)),

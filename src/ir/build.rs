@@ -17,6 +17,7 @@ enum Key {
     FloatToInt(Reg),
     Select(Reg, Reg, Reg),
     Derivative(Reg, bool),
+    Clamped(Reg, u32),
 }
 
 /// Builds a program.
@@ -162,13 +163,18 @@ impl Builder {
     /// `a op b`
     pub fn binary(&mut self, op: Binary, a: Reg, b: Reg) -> Reg {
         if self.simplify {
-            match (op, self.known_float(a), self.known_float(b)) {
-                (_, Some(x), Some(y)) => return self.float(fold::binary(op, x, y)),
-                // Exact for every value, not-a-number and minus zero included.
-                (Binary::Mul | Binary::Div, _, Some(1.0)) => return a,
-                (Binary::Mul, Some(1.0), _) => return b,
-                (Binary::Sub, _, Some(y)) if y.to_bits() == 0 => return a,
-                _ => {}
+            let (x, y) = (self.known_float(a), self.known_float(b));
+            if let (Some(x), Some(y)) = (x, y) {
+                return self.float(fold::binary(op, x, y));
+            }
+            // Exact for every value, not-a-number and minus zero included. A division by one is not: it makes what is
+            // infinite zero.
+            let same = (op == Binary::Mul && y == Some(1.0)) || (op == Binary::Sub && y.map(f32::to_bits) == Some(0));
+            if same {
+                return a;
+            }
+            if op == Binary::Mul && x == Some(1.0) {
+                return b;
             }
         }
         self.value(Key::Binary(op, a, b), Kind::Float, &[a, b], |dst| Instr::Binary(op, dst, a, b))
@@ -240,6 +246,17 @@ impl Builder {
     /// Derivative along x or y
     pub fn derivative(&mut self, a: Reg, along_y: bool) -> Reg {
         self.value(Key::Derivative(a, along_y), Kind::Float, &[a], |dst| Instr::Derivative(dst, a, along_y))
+    }
+
+    /// An index kept inside `0..len`, and reported when it is outside
+    pub fn clamped(&mut self, a: Reg, len: u32, span: velour_grammar::Span) -> Reg {
+        let routine = Routine::ClampIndex(len);
+        self.value(Key::Clamped(a, len), Kind::Int, &[a], |dst| Instr::Call {
+            routine,
+            dst: vec![dst],
+            src: vec![a],
+            span,
+        })
     }
 
     /// A copy in a register of its own.

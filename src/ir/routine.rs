@@ -20,6 +20,8 @@ pub enum Routine {
     Slope(Smooth),
     /// The matrix from one named space to another: two symbols to 16 floats and an int that is 1 when both are known.
     SpaceMatrix,
+    /// The number of a component, kept inside `0..n`; one that is outside is reported.
+    ClampIndex(u32),
     /// `hash` of an int.
     HashInt,
     /// `hash` of 1 to 4 floats.
@@ -235,7 +237,7 @@ impl Routine {
                 let reach = Reach::Host;
                 Declaration { reach, ..pure(smallvec![(String, 2)], smallvec![(Float, 16), (Int, 1)]) }
             }
-            Routine::HashInt => pure(one(Int), one(Int)),
+            Routine::ClampIndex(_) | Routine::HashInt => pure(one(Int), one(Int)),
             Routine::HashFloats(count) => pure(smallvec![(Float, *count)], one(Int)),
             Routine::HashString | Routine::Strlen | Routine::Stoi => pure(one(String), one(Int)),
             Routine::GetChar => pure(smallvec![(String, 1), (Int, 1)], one(Int)),
@@ -269,6 +271,7 @@ impl Routine {
         match self {
             Routine::Noise(noise) => noise.exists(),
             Routine::HashFloats(count) => (1..=4).contains(count),
+            Routine::ClampIndex(len) => (1..=i32::MAX as u32).contains(len),
             Routine::Attribute(attribute) => !attribute.slopes || matches!(attribute.ty, AttributeType::Floats(_)),
             Routine::Smooth(_) | Routine::Slope(_) | Routine::SpaceMatrix | Routine::HashInt => true,
             Routine::HashString | Routine::Strlen | Routine::GetChar | Routine::StartsWith => true,
@@ -285,6 +288,7 @@ impl Routine {
             Routine::Smooth(function) => function.name(),
             Routine::Slope(function) => function.slope_name(),
             Routine::SpaceMatrix => "space_matrix",
+            Routine::ClampIndex(_) => "clamp_index",
             Routine::HashInt => "hash_int",
             Routine::HashFloats(_) => "hash_floats",
             Routine::HashString => "hash_string",

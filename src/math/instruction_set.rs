@@ -97,7 +97,17 @@ macro_rules! lanes {
     (@ [$($meta:tt)*] [$vis:vis] $name:ident $generics:tt $given:tt $args:tt [] $body:block) => {
         $crate::lanes!(@ [$($meta)*] [$vis] $name $generics $given $args [()] $body);
     };
-    (@ [$($meta:tt)*] [$vis:vis] $name:ident [$($generics:tt)*] [$($given:tt)*] [$($arg:ident: $ty:ty),*] [$ret:ty] $body:block) => {
+    (@ [$($meta:tt)*] [$vis:vis] $name:ident $generics:tt $given:tt $args:tt [$ret:ty] $body:block) => {
+        $crate::each_instruction_set!([$($meta)*] [$vis] $name $generics $given $args [$ret] $body);
+    };
+}
+
+/// The function of [`lanes!`](crate::lanes), with a version for each set.
+#[cfg(not(one_instruction_set))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! each_instruction_set {
+    ([$($meta:tt)*] [$vis:vis] $name:ident [$($generics:tt)*] [$($given:tt)*] [$($arg:ident: $ty:ty),*] [$ret:ty] $body:block) => {
         $($meta)*
         #[allow(clippy::too_many_arguments, unsafe_code)]
         #[inline]
@@ -120,5 +130,18 @@ macro_rules! lanes {
                 _ => baseline $($given)* ($($arg),*),
             }
         }
+    };
+}
+
+/// The function of [`lanes!`](crate::lanes) as it stands: without optimisation a set brings nothing and costs as much
+/// compiling as the function itself.
+#[cfg(one_instruction_set)]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! each_instruction_set {
+    ([$($meta:tt)*] [$vis:vis] $name:ident [$($generics:tt)*] $given:tt [$($arg:ident: $ty:ty),*] [$ret:ty] $body:block) => {
+        $($meta)*
+        #[allow(clippy::too_many_arguments)]
+        $vis fn $name $($generics)* ($($arg: $ty),*) -> $ret $body
     };
 }

@@ -1,132 +1,121 @@
 //! Removes instructions whose results nobody reads.
+//!
+//! What is needed is found by demand: from the results and the effects back to what they are computed from, and out to the
+//! branches they stand in.
 
+use super::flow::Flow;
 use crate::ir::program::*;
 
 /// What is needed so far.
-struct Live {
+struct Live<'p> {
+    flow: Flow<'p>,
     regs: Vec<bool>,
     arrays: Vec<bool>,
-    changed: bool,
+    nodes: Vec<bool>,
+    /// Needed nodes whose own needs have not been looked at.
+    open: Vec<usize>,
 }
 
-/// Removes dead instructions, and branches and loops that became empty.
+/// Removes dead instructions, and branches that are empty without them.
 pub fn remove(program: &mut Program) {
-    let mut live = roots(program);
-    // A branch that only computes dead values keeps its condition alive for one round, so it takes a few.
-    loop {
-        live.changed = true;
-        while live.changed {
-            live.changed = false;
-            live.block(&program.body);
-        }
-        let before = count(&program.body);
-        program.body = sweep(std::mem::take(&mut program.body), &live);
-        if count(&program.body) == before {
-            return;
-        }
-        live = roots(program);
-    }
+    let needed = needed(program);
+    program.body = sweep(std::mem::take(&mut program.body), &needed, &mut 0);
 }
 
-fn roots(program: &Program) -> Live {
-    let mut live =
-        Live { regs: vec![false; program.regs.len()], arrays: vec![false; program.arrays.len()], changed: false };
-    program.result.iter().for_each(|&reg| live.reg(reg));
-    for output in &program.outputs {
-        match &output.value {
-            OutputValue::Regs(regs) => regs.iter().for_each(|&reg| live.reg(reg)),
-            OutputValue::Array(id) => live.arrays[id.0 as usize] = true,
+/// Which nodes are needed, in the order of the text.
+fn needed(program: &Program) -> Vec<bool> {
+    let flow = Flow::of(program);
+    let nodes = vec![false; flow.nodes.len()];
+    let (regs, arrays) = (vec![false; program.regs.len()], vec![false; program.arrays.len()]);
+    let mut live = Live { flow, regs, arrays, nodes, open: Vec::new() };
+    live.roots(program);
+    while let Some(node) = live.open.pop() {
+        live.needs_of(node);
+    }
+    live.nodes
+}
+
+impl Live<'_> {
+    fn roots(&mut self, program: &Program) {
+        program.result.iter().for_each(|&reg| self.reg(reg));
+        for output in &program.outputs {
+            match &output.value {
+                OutputValue::Regs(regs) => regs.iter().for_each(|&reg| self.reg(reg)),
+                OutputValue::Array(id) => self.array(*id),
+            }
         }
-    }
-    live
-}
-
-fn count(block: &Block) -> usize {
-    let inner = |node: &Node| match node {
-        Node::Instr(_) | Node::Leave(_) => 1,
-        Node::If(_, a, b) => 1 + count(a) + count(b),
-        Node::Loop { head, body, .. } => 1 + count(head) + count(body),
-        Node::Scope(_, body) => 1 + count(body),
-    };
-    block.iter().map(inner).sum()
-}
-
-impl Live {
-    fn reg(&mut self, reg: Reg) {
-        let slot = &mut self.regs[reg.0 as usize];
-        self.changed |= !*slot;
-        *slot = true;
-    }
-
-    /// Marks what a block needs, last node first, so that one walk does for straight code.
-    fn block(&mut self, block: &Block) {
-        for node in block.iter().rev() {
-            match node {
-                Node::Instr(instr) => self.instr(instr),
-                Node::If(condition, a, b) => {
-                    self.block(a);
-                    self.block(b);
-                    self.reg(*condition);
-                }
-                Node::Loop { head, condition, body, .. } => {
-                    self.block(body);
-                    self.reg(*condition);
-                    self.block(head);
-                }
-                Node::Scope(_, body) => self.block(body),
-                Node::Leave(_) => {}
+        for node in 0..self.flow.nodes.len() {
+            let root = match self.flow.nodes[node].node {
+                Node::Instr(instr) => instr.has_effect(),
+                // A loop without effect may still run for ever, which is the user's mistake to hear of; it stays.
+                Node::Loop { .. } | Node::Leave(_) => true,
+                Node::If(..) | Node::Scope(..) => false,
+            };
+            if root {
+                self.node(node);
             }
         }
     }
 
-    fn instr(&mut self, instr: &Instr) {
-        if !self.needed(instr) {
-            return;
-        }
-        instr.reads(|reg| self.reg(reg));
-        if let Instr::ArrayGet { array, .. } = instr {
-            let slot = &mut self.arrays[array.0 as usize];
-            self.changed |= !*slot;
-            *slot = true;
+    fn node(&mut self, node: usize) {
+        if !std::mem::replace(&mut self.nodes[node], true) {
+            self.open.push(node);
         }
     }
 
-    fn needed(&self, instr: &Instr) -> bool {
-        if let Instr::ArraySet { array, .. } = instr {
-            return self.arrays[array.0 as usize];
+    fn reg(&mut self, reg: Reg) {
+        if !std::mem::replace(&mut self.regs[reg.0 as usize], true) {
+            for writer in self.flow.writers.of(reg.0).collect::<Vec<_>>() {
+                self.node(writer);
+            }
         }
-        let mut needed = instr.has_effect();
-        instr.writes(|reg| needed |= self.regs[reg.0 as usize]);
-        needed
+    }
+
+    fn array(&mut self, array: ArrayId) {
+        if !std::mem::replace(&mut self.arrays[array.0 as usize], true) {
+            for setter in self.flow.setters.of(array.0).collect::<Vec<_>>() {
+                self.node(setter);
+            }
+        }
+    }
+
+    fn needs_of(&mut self, node: usize) {
+        match self.flow.nodes[node].node {
+            Node::Instr(instr) => {
+                instr.reads(|reg| self.reg(reg));
+                if let Instr::ArrayGet { array, .. } = instr {
+                    self.array(*array);
+                }
+            }
+            Node::If(condition, ..) | Node::Loop { condition, .. } => self.reg(*condition),
+            Node::Scope(..) | Node::Leave(_) => {}
+        }
+        if let Some(owner) = self.flow.owner(node) {
+            self.node(owner);
+        }
     }
 }
 
-fn sweep(block: Block, live: &Live) -> Block {
+/// Keeps the needed nodes; `next` is the number of the first node of the block.
+fn sweep(block: Block, needed: &[bool], next: &mut usize) -> Block {
     let mut out = Block::with_capacity(block.len());
     for node in block {
-        match node {
-            Node::Instr(instr) => {
-                if live.needed(&instr) {
-                    out.push(Node::Instr(instr));
-                }
-            }
+        let keep = needed[*next];
+        *next += 1;
+        let node = match node {
             Node::If(condition, a, b) => {
-                let (a, b) = (sweep(a, live), sweep(b, live));
-                if !a.is_empty() || !b.is_empty() {
-                    out.push(Node::If(condition, a, b));
-                }
+                let a = sweep(a, needed, next);
+                Node::If(condition, a, sweep(b, needed, next))
             }
-            // A loop without effect may still run for ever, which is the user's mistake to hear of; it stays.
             Node::Loop { head, condition, body, span } => {
-                out.push(Node::Loop { head: sweep(head, live), condition, body: sweep(body, live), span });
+                let head = sweep(head, needed, next);
+                Node::Loop { head, condition, body: sweep(body, needed, next), span }
             }
-            Node::Scope(id, body) => {
-                let body = sweep(body, live);
-                if !body.is_empty() {
-                    out.push(Node::Scope(id, body));
-                }
-            }
-            leave @ Node::Leave(_) => out.push(leave),
+            Node::Scope(id, body) => Node::Scope(id, sweep(body, needed, next)),
+            Node::Instr(_) | Node::Leave(_) => node,
+        };
+        if keep {
+            out.push(node);
         }
     }
     out

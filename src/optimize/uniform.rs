@@ -1,134 +1,165 @@
 //! Finds the registers that hold the same value in every lane, and the places where some lanes may be inactive.
 //!
-//! A register varies when something it is computed from varies, or when it is written where only some lanes run.
-//! Starting from "nothing varies", the walk is repeated until nothing changes, so loops come out right.
+//! A register varies when something it is computed from varies, or when it is written where only some lanes run. Starting
+//! from "nothing varies", each register that turns out to vary is carried to its readers, each condition to what stands
+//! under it, and each way out of a scope to what follows.
 
+use super::flow::Flow;
 use crate::ir::op::Reach;
 use crate::ir::program::*;
 
-struct Walk {
+struct Walk<'p> {
+    flow: Flow<'p>,
     varying: Vec<bool>,
     varying_arrays: Vec<bool>,
-    changed: bool,
-    /// The scopes that some lanes have left by the end of each loop, in the order of the walk.
-    behind: Vec<Vec<ScopeId>>,
-    /// How many loops this walk has met.
-    loops: usize,
-}
-
-/// Adds the scopes that are not there yet.
-fn join(left: &mut Vec<ScopeId>, more: &[ScopeId]) {
-    for scope in more {
-        if !left.contains(scope) {
-            left.push(*scope);
-        }
-    }
+    /// Nodes that may run while some lanes are inactive.
+    masked: Vec<bool>,
+    /// From which node on each block is masked.
+    masked_from: Vec<usize>,
+    /// Registers found to vary whose readers have not heard of it.
+    open: Vec<Reg>,
 }
 
 /// Sets the uniform flags of registers and arrays and the masked flags of moves.
 pub fn mark(program: &mut Program, find_uniform: bool) {
-    let inputs = program.regs.iter().map(|info| matches!(info.source, Source::Input(_)) || !find_uniform);
-    let constant = |info: &RegInfo| matches!(info.source, Source::Const(_));
-    let varying = inputs.zip(&program.regs).map(|(varying, info)| varying && !constant(info)).collect();
+    let flow = Flow::of(program);
     let mut walk = Walk {
-        varying,
-        varying_arrays: vec![!find_uniform; program.arrays.len()],
-        changed: true,
-        behind: Vec::new(),
-        loops: 0,
+        varying: vec![false; program.regs.len()],
+        varying_arrays: vec![false; program.arrays.len()],
+        masked: vec![false; flow.nodes.len()],
+        masked_from: flow.blocks.iter().map(|block| block.nodes.len()).collect(),
+        open: Vec::new(),
+        flow,
     };
-    while walk.changed {
-        (walk.changed, walk.loops) = (false, 0);
-        walk.block(&mut program.body, false, &mut Vec::new());
+    walk.begin(program, find_uniform);
+    while let Some(reg) = walk.open.pop() {
+        for reader in walk.flow.readers.of(reg.0).collect::<Vec<_>>() {
+            walk.reads_varying(reader);
+        }
     }
-    for (info, &varying) in program.regs.iter_mut().zip(&walk.varying) {
+    let Walk { varying, varying_arrays, masked, .. } = walk;
+    for (info, varying) in program.regs.iter_mut().zip(varying) {
         info.uniform = !varying;
     }
-    for (info, &varying) in program.arrays.iter_mut().zip(&walk.varying_arrays) {
+    for (info, varying) in program.arrays.iter_mut().zip(varying_arrays) {
         info.uniform = !varying;
     }
+    set_masked(&mut program.body, &masked, &mut 0);
 }
 
-impl Walk {
-    fn varies(&self, reg: Reg) -> bool {
-        self.varying[reg.0 as usize]
+impl Walk<'_> {
+    /// What varies to begin with: inputs and what depends on the lane itself, or everything.
+    fn begin(&mut self, program: &Program, find_uniform: bool) {
+        for (at, info) in program.regs.iter().enumerate() {
+            let varies = match info.source {
+                Source::Input(_) => true,
+                Source::Code => !find_uniform,
+                Source::Const(_) => false,
+            };
+            if varies {
+                self.set(Reg(at as u32));
+            }
+        }
+        if !find_uniform {
+            (0..program.arrays.len()).for_each(|at| self.set_array(ArrayId(at as u32)));
+        }
+        for node in 0..self.flow.nodes.len() {
+            if let Node::Instr(instr @ Instr::Call { routine, .. }) = self.flow.nodes[node].node
+                && routine.declaration().reach == Reach::Lane
+            {
+                self.set_written(instr);
+            }
+        }
     }
 
     fn set(&mut self, reg: Reg) {
-        let slot = &mut self.varying[reg.0 as usize];
-        self.changed |= !*slot;
-        *slot = true;
-    }
-
-    /// Walks a block. `left` collects the scopes that some, but maybe not all, lanes have left by now.
-    fn block(&mut self, block: &mut Block, masked: bool, left: &mut Vec<ScopeId>) {
-        for node in block {
-            let masked = masked || !left.is_empty();
-            match node {
-                Node::Instr(instr) => self.instr(instr, masked),
-                Node::If(condition, a, b) => {
-                    let masked = masked || self.varies(*condition);
-                    let mut left_b = left.clone();
-                    self.block(a, masked, left);
-                    self.block(b, masked, &mut left_b);
-                    join(left, &left_b);
-                }
-                Node::Loop { head, condition, body, .. } => {
-                    // What a round leaves behind holds for the next one. It is remembered from walk to walk, as walking
-                    // a loop twice here would double the work with every level of nesting.
-                    let number = self.loops;
-                    self.loops += 1;
-                    if self.behind.len() <= number {
-                        self.behind.push(Vec::new());
-                    }
-                    join(left, &self.behind[number]);
-                    let masked = masked || self.varies(*condition) || !left.is_empty();
-                    self.block(head, masked, left);
-                    self.block(body, masked || self.varies(*condition), left);
-                    if left.iter().any(|scope| !self.behind[number].contains(scope)) {
-                        join(&mut self.behind[number], left);
-                        self.changed = true;
-                    }
-                }
-                Node::Scope(id, body) => {
-                    self.block(body, masked, left);
-                    left.retain(|scope| scope != id);
-                }
-                // Where all lanes are active they leave together, and what follows is skipped.
-                Node::Leave(scope) => {
-                    if masked {
-                        join(left, &[*scope]);
-                    }
-                }
-            }
+        if !std::mem::replace(&mut self.varying[reg.0 as usize], true) {
+            self.open.push(reg);
         }
     }
 
-    fn instr(&mut self, instr: &mut Instr, in_mask: bool) {
-        if let Instr::ArraySet { array, index, src, masked, .. } = instr {
-            *masked = in_mask;
-            if in_mask || self.varies(*index) || self.varies(*src) {
-                let slot = &mut self.varying_arrays[array.0 as usize];
-                self.changed |= !*slot;
-                *slot = true;
-            }
+    fn set_written(&mut self, instr: &Instr) {
+        instr.writes(|reg| self.set(reg));
+    }
+
+    fn set_array(&mut self, array: ArrayId) {
+        if std::mem::replace(&mut self.varying_arrays[array.0 as usize], true) {
             return;
         }
-        let mut varies = false;
-        instr.reads(|reg| varies |= self.varies(reg));
-        match instr {
-            Instr::Move { masked, .. } => {
-                *masked = in_mask;
-                varies |= in_mask;
+        for getter in self.flow.getters.of(array.0).collect::<Vec<_>>() {
+            if let Node::Instr(instr) = self.flow.nodes[getter].node {
+                self.set_written(instr);
             }
-            Instr::ArrayGet { array, .. } => varies |= self.varying_arrays[array.0 as usize],
-            Instr::Call { routine, .. } => varies |= routine.declaration().reach == Reach::Lane,
-            _ => {}
         }
-        if varies {
-            let mut written = Vec::new();
-            instr.writes(|reg| written.push(reg));
-            written.into_iter().for_each(|reg| self.set(reg));
+    }
+
+    /// A node reads a register that varies.
+    fn reads_varying(&mut self, node: usize) {
+        match self.flow.nodes[node].node {
+            Node::Instr(Instr::ArraySet { array, .. }) => self.set_array(*array),
+            Node::Instr(instr) => self.set_written(instr),
+            Node::If(..) | Node::Loop { .. } => self.mask_inside(node),
+            Node::Scope(..) | Node::Leave(_) => {}
+        }
+    }
+
+    fn mask_inside(&mut self, node: usize) {
+        for block in self.flow.nodes[node].inside.into_iter().flatten() {
+            self.mask_from(block, 0);
+        }
+    }
+
+    /// Some lanes may be inactive in a block from one of its nodes on.
+    fn mask_from(&mut self, block: usize, from: usize) {
+        let end = self.masked_from[block];
+        self.masked_from[block] = end.min(from);
+        for at in from..end {
+            self.mask(self.flow.blocks[block].nodes[at]);
+        }
+    }
+
+    fn mask(&mut self, node: usize) {
+        if std::mem::replace(&mut self.masked[node], true) {
+            return;
+        }
+        match self.flow.nodes[node].node {
+            Node::Instr(Instr::Move { dst, .. }) => self.set(*dst),
+            Node::Instr(Instr::ArraySet { array, .. }) => self.set_array(*array),
+            Node::Instr(_) => {}
+            Node::If(..) | Node::Loop { .. } | Node::Scope(..) => self.mask_inside(node),
+            // Where all lanes are active they leave together, and what follows is skipped.
+            Node::Leave(scope) => self.leave(node, *scope),
+        }
+    }
+
+    /// Some lanes leave a scope: what follows up to its end runs without them, and so does the next round of a loop.
+    fn leave(&mut self, node: usize, scope: ScopeId) {
+        let mut at = node;
+        loop {
+            let (block, after) = (self.flow.nodes[at].block, self.flow.nodes[at].at + 1);
+            self.mask_from(block, after);
+            let Some(owner) = self.flow.blocks[block].owner else { return };
+            match self.flow.nodes[owner].node {
+                Node::Scope(id, _) if *id == scope => return,
+                Node::Loop { .. } => self.mask(owner),
+                Node::Instr(_) | Node::If(..) | Node::Scope(..) | Node::Leave(_) => {}
+            }
+            at = owner;
+        }
+    }
+}
+
+/// Writes the masked flags of moves and stores, in the order of the text.
+fn set_masked(block: &mut Block, flags: &[bool], next: &mut usize) {
+    for node in block {
+        let flag = flags[*next];
+        *next += 1;
+        match node {
+            Node::Instr(Instr::Move { masked, .. } | Instr::ArraySet { masked, .. }) => *masked = flag,
+            Node::Instr(_) | Node::Leave(_) => {}
+            Node::If(_, a, b) => [a, b].into_iter().for_each(|block| set_masked(block, flags, next)),
+            Node::Loop { head, body, .. } => [head, body].into_iter().for_each(|block| set_masked(block, flags, next)),
+            Node::Scope(_, body) => set_masked(body, flags, next),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::lanes;
 use crate::math::columns::Column3;
+use crate::math::elementary::tan;
 use crate::scene::Camera;
 use glam::Vec3;
 
@@ -20,7 +21,7 @@ pub struct RayCamera {
 impl RayCamera {
     /// Sets `camera` up for an image of `width` x `height` pixels.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
-        let k = (camera.fov.to_radians() * 0.5).tan();
+        let k = tan(camera.fov.to_radians() * 0.5);
         let across = camera.direction.cross(camera.up).normalize() * (k * width as f32 / height as f32);
         // As in testrender, k is the whole height of the film at distance 1, so a picture spans tan(fov/2), not twice
         // that. Scenes written for it are framed this way.

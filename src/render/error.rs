@@ -1,14 +1,36 @@
-//! Why a scene cannot be rendered.
+//! Why a scene cannot be rendered, or its picture not written; what a user may get wrong has a stable code.
 
 use crate::scene::CameraFlaw;
 use std::fmt;
+use std::path::PathBuf;
+
+/// What cannot be in the settings of a render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SettingsError {
+    /// R0101: no pixels, or more than 2^27.
+    Size {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+    },
+    /// R0102: no samples.
+    NoSamples,
+    /// R0103: a noise to stop at that is not above 0.
+    Noise,
+    /// R0104: a time to stop at that is not above 0.
+    Seconds,
+    /// R0105: tiles, waves or batches of nothing.
+    Batches,
+}
 
 /// What keeps a scene from being rendered.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RenderError {
     /// The settings ask for what cannot be.
-    Settings(String),
+    Settings(SettingsError),
     /// The camera cannot make a picture.
     Camera(CameraFlaw),
     /// There is no such material.
@@ -29,7 +51,8 @@ pub enum RenderError {
 impl fmt::Display for RenderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            RenderError::Settings(message) | RenderError::Shader(message) => f.write_str(message),
+            RenderError::Settings(error) => error.fmt(f),
+            RenderError::Shader(message) => f.write_str(message),
             RenderError::Camera(flaw) => write!(f, "{flaw}"),
             RenderError::Material { index, count } => {
                 write!(f, "there is no material {index}; the scene has {count}, counted from 0")
@@ -40,4 +63,103 @@ impl fmt::Display for RenderError {
     }
 }
 
-impl std::error::Error for RenderError {}
+impl std::error::Error for RenderError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            RenderError::Settings(error) => Some(error),
+            RenderError::Camera(flaw) => Some(flaw),
+            RenderError::Material { .. }
+            | RenderError::Threads(_)
+            | RenderError::ThreadFailed
+            | RenderError::Shader(_) => None,
+        }
+    }
+}
+
+impl SettingsError {
+    /// A stable code, for programs.
+    pub fn code(&self) -> &'static str {
+        match self {
+            SettingsError::Size { .. } => "R0101",
+            SettingsError::NoSamples => "R0102",
+            SettingsError::Noise => "R0103",
+            SettingsError::Seconds => "R0104",
+            SettingsError::Batches => "R0105",
+        }
+    }
+}
+
+impl fmt::Display for SettingsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SettingsError::Size { width, height } => {
+                write!(f, "an image of {width} x {height} pixels cannot be rendered")
+            }
+            SettingsError::NoSamples => f.write_str("at least one sample a pixel is needed"),
+            SettingsError::Noise => f.write_str("the noise to stop at must be a number above 0, such as 0.01"),
+            SettingsError::Seconds => f.write_str("the time to stop at must be a number of seconds above 0"),
+            SettingsError::Batches => f.write_str("tile size, wave size and batch width must be above 0"),
+        }
+    }
+}
+
+impl std::error::Error for SettingsError {}
+
+/// Why a picture cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum OutputError {
+    /// R0201: the file's extension is none of those that can be written.
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+    },
+    /// R0202: the file's folder is not there.
+    NoFolder {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// R0203: a folder has that name.
+    IsFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// R0204: the file cannot be written.
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// What the system or the encoder says.
+        reason: String,
+    },
+}
+
+impl OutputError {
+    /// The extensions of the formats that can be written.
+    pub const EXTENSIONS: [&str; 3] = ["exr", "png", "hdr"];
+
+    /// A stable code, for programs.
+    pub fn code(&self) -> &'static str {
+        match self {
+            OutputError::UnknownFormat { .. } => "R0201",
+            OutputError::NoFolder { .. } => "R0202",
+            OutputError::IsFolder { .. } => "R0203",
+            OutputError::Unwritable { .. } => "R0204",
+        }
+    }
+}
+
+impl fmt::Display for OutputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            OutputError::UnknownFormat { path } => {
+                let (shown, known) = (path.display(), Self::EXTENSIONS.join(", "));
+                write!(f, "cannot tell the image format of `{shown}`; known extensions: {known}")
+            }
+            OutputError::NoFolder { folder } => write!(f, "the folder `{}` is not there", folder.display()),
+            OutputError::IsFolder { path } => write!(f, "`{}` is a folder", path.display()),
+            OutputError::Unwritable { path, reason } => write!(f, "cannot write `{}`: {reason}", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for OutputError {}

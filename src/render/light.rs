@@ -5,6 +5,7 @@ use super::form::Form;
 use super::segment::Segment;
 use crate::lanes;
 use crate::math::columns::Column3;
+use crate::math::elementary::sincos;
 use crate::scene::{Geometry, Shape};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -308,7 +309,7 @@ fn sample_sphere(center: Vec3, radius: f32, p: Vec3, on: bool, x: f32, y: f32) -
     let to_center = center - p;
     let distance2 = to_center.length_squared();
     let phi = 2.0 * PI * x;
-    let (sin_phi, cos_phi) = phi.sin_cos();
+    let (sin_phi, cos_phi) = sincos(phi);
     if on || distance2 < radius * radius {
         let height = 1.0 - 2.0 * y;
         let ring = (1.0 - height * height).max(0.0).sqrt();

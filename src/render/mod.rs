@@ -81,7 +81,7 @@ mod trace;
 mod wave;
 mod world;
 
-pub use error::RenderError;
+pub use error::{OutputError, RenderError, SettingsError};
 pub use explain::{Explanation, MaterialNeeds, Saving};
 pub use image::{About, Image};
 pub use plan::{MaterialPlan, Needs, Plan};

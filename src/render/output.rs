@@ -1,6 +1,8 @@
 //! Image files: EXR, PNG and HDR, written under a temporary name and then renamed, so that no half file is ever seen.
 
+use super::error::OutputError;
 use super::image::Image;
+use crate::math::elementary::pow;
 use exr::prelude as exr;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -17,34 +19,25 @@ pub enum Format {
     Hdr,
 }
 
-/// The extensions that `check` accepts.
-pub const EXTENSIONS: [&str; 3] = ["exr", "png", "hdr"];
-
 /// Says, before anything is rendered, whether a file of this name can be written.
-pub fn check(path: &Path) -> Result<Format, String> {
+pub fn check(path: &Path) -> Result<Format, OutputError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let format = match extension.as_str() {
         "exr" => Format::Exr,
         "png" => Format::Png,
         "hdr" => Format::Hdr,
-        _ => {
-            let shown = path.display();
-            return Err(format!(
-                "cannot tell the image format of `{shown}`; known extensions: {}",
-                EXTENSIONS.join(", ")
-            ));
-        }
+        _ => return Err(OutputError::UnknownFormat { path: path.to_owned() }),
     };
     let folder = folder_of(path);
     if !folder.is_dir() {
-        return Err(format!("the folder `{}` is not there", folder.display()));
+        return Err(OutputError::NoFolder { folder: folder.to_owned() });
     }
     if path.is_dir() {
-        return Err(format!("`{}` is a folder", path.display()));
+        return Err(OutputError::IsFolder { path: path.to_owned() });
     }
     // Permissions, full disks and odd file systems are best found out by trying.
     let temporary = temporary_name(path);
-    let tried = File::create(&temporary).map_err(|e| format!("cannot write `{}`: {e}", path.display()));
+    let tried = File::create(&temporary).map_err(|e| unwritable(path, e.to_string()));
     if tried.is_ok() {
         // What cannot be removed now is written over, and then renamed, by the image.
         let _ = std::fs::remove_file(&temporary);
@@ -53,7 +46,7 @@ pub fn check(path: &Path) -> Result<Format, String> {
 }
 
 /// Writes `image` to `path` in the format of its extension.
-pub fn write(image: &Image, path: &Path) -> Result<(), String> {
+pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
     let format = check(path)?;
     let temporary = temporary_name(path);
     let written =
@@ -61,8 +54,12 @@ pub fn write(image: &Image, path: &Path) -> Result<(), String> {
     written.map_err(|e| {
         // A failure to remove is not worth hiding the first failure for.
         let _ = std::fs::remove_file(&temporary);
-        format!("cannot write `{}`: {e}", path.display())
+        unwritable(path, e)
     })
+}
+
+fn unwritable(path: &Path, reason: String) -> OutputError {
+    OutputError::Unwritable { path: path.to_owned(), reason }
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -147,7 +144,7 @@ fn write_png(image: &Image, writer: &mut impl Write) -> Result<(), String> {
 /// The transfer curve of IEC 61966-2-1, clipped to [0, 1].
 fn srgb(linear: f32) -> f32 {
     let x = linear.clamp(0.0, 1.0);
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * pow(x, 1.0 / 2.4) - 0.055 }
 }
 
 fn write_hdr(image: &Image, writer: &mut impl Write) -> Result<(), String> {

@@ -7,6 +7,7 @@ use super::plan::Needs;
 use super::segment::Segment;
 use crate::exec::Points;
 use crate::lanes;
+use crate::math::elementary::{acos, atan2};
 use crate::scene::{Geometry, Primitive, Shape};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -149,8 +150,8 @@ fn follow(points: &mut Points, lane: usize, geometry: &Geometry, segment: &Segme
 fn texture_coordinates(geometry: &Geometry, primitive: &Primitive, hit: &Hit, n: Vec3) -> Vec2 {
     match primitive.shape {
         Shape::Sphere { .. } => {
-            let around = (-n.x).atan2(-n.z) * (0.5 * FRAC_1_PI);
-            Vec2::new(if around < 0.0 { around + 1.0 } else { around }, n.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI)
+            let around = atan2(-n.x, -n.z) * (0.5 * FRAC_1_PI);
+            Vec2::new(if around < 0.0 { around + 1.0 } else { around }, acos(n.y.clamp(-1.0, 1.0)) * FRAC_1_PI)
         }
         Shape::Quad { .. } => Vec2::new(hit.u, hit.v),
         Shape::Triangle { .. } => match geometry.uvs.get(primitive.uvs as usize) {

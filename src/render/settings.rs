@@ -1,5 +1,6 @@
 //! What a user can set about a render.
 
+use super::error::SettingsError;
 use crate::scene::Options;
 use crate::{closure, exec};
 
@@ -111,21 +112,21 @@ impl Settings {
     }
 
     /// Says what cannot be rendered, if anything.
-    pub fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<(), SettingsError> {
         if self.width == 0 || self.height == 0 || u64::from(self.width) * u64::from(self.height) > 1 << 27 {
-            return Err(format!("an image of {} x {} pixels cannot be rendered", self.width, self.height));
+            return Err(SettingsError::Size { width: self.width, height: self.height });
         }
         if self.samples == 0 {
-            return Err("at least one sample a pixel is needed".into());
+            return Err(SettingsError::NoSamples);
         }
         if self.noise.is_some_and(|noise| !(noise > 0.0 && noise.is_finite())) {
-            return Err("the noise to stop at must be a number above 0, such as 0.01".into());
+            return Err(SettingsError::Noise);
         }
         if self.seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds.is_finite())) {
-            return Err("the time to stop at must be a number of seconds above 0".into());
+            return Err(SettingsError::Seconds);
         }
         if self.tile_size == 0 || self.wave_size == 0 || self.batch_width == 0 {
-            return Err("tile size, wave size and batch width must be above 0".into());
+            return Err(SettingsError::Batches);
         }
         Ok(())
     }

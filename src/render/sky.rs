@@ -1,5 +1,6 @@
 //! The background: a constant, or a shader with an importance table over directions of equal area.
 
+use crate::math::elementary::{atan2, sincos};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -34,7 +35,7 @@ pub struct SkyTable {
 impl SkyTable {
     /// The direction of a point of the table, in cells.
     pub fn direction(side: usize, x: f32, y: f32) -> Vec3 {
-        let (sin, cos) = (2.0 * PI * x / side as f32).sin_cos();
+        let (sin, cos) = sincos(2.0 * PI * x / side as f32);
         let z = 1.0 - 2.0 * y / side as f32;
         let ring = (1.0 - z * z).max(0.0).sqrt();
         Vec3::new(ring * cos, ring * sin, z)
@@ -83,7 +84,7 @@ impl SkyTable {
     /// The density with which `sample` gives `direction`.
     #[inline]
     pub fn pdf(&self, direction: Vec3) -> f32 {
-        let turn = direction.y.atan2(direction.x) / (2.0 * PI);
+        let turn = atan2(direction.y, direction.x) / (2.0 * PI);
         let turn = if turn < 0.0 { turn + 1.0 } else { turn };
         let cell = |x: f32| ((x * self.side as f32) as usize).min(self.side - 1);
         self.density[cell((1.0 - direction.z) * 0.5) * self.side + cell(turn)]

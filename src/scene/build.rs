@@ -1,7 +1,7 @@
 //! Builds a scene, one XML element after another; what each tag and attribute means is written here and nowhere else.
 
 use super::camera::{Camera, CameraFlaw};
-use super::error::{Place, SceneError};
+use super::error::{Place, SceneError, SceneProblem};
 use super::flakes::Flakes;
 use super::geometry::{Geometry, Shape};
 use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
@@ -66,7 +66,7 @@ impl<'c> Builder<'c> {
     /// The finished scene; `root` is the place to blame for what is missing.
     pub fn finish(self, root: Place) -> Result<Scene, SceneError> {
         if self.geometry.primitives.is_empty() && self.scene.background.is_none() {
-            return Err(SceneError::at(root, "the scene has nothing to see")
+            return Err(SceneError::at(root, SceneProblem::NothingToSee)
                 .with_help("add a <Sphere>, <Quad>, <Model> or <Background>"));
         }
         Ok(Scene { geometry: Arc::new(self.geometry), ..self.scene })
@@ -110,8 +110,10 @@ impl<'c> Builder<'c> {
         if let Some(flaw) = camera.flaw() {
             let error = match flaw {
                 CameraFlaw::Angle => e.bad_value("fov", "an angle between 0 and 180 degrees"),
-                CameraFlaw::TooNarrow => SceneError::at(e.value_place("fov"), flaw.message()),
-                CameraFlaw::Eye | CameraFlaw::Direction | CameraFlaw::Up => SceneError::at(e.place(), flaw.message()),
+                CameraFlaw::TooNarrow => SceneError::at(e.value_place("fov"), SceneProblem::Camera(flaw)),
+                CameraFlaw::Eye | CameraFlaw::Direction | CameraFlaw::Up => {
+                    SceneError::at(e.place(), SceneProblem::Camera(flaw))
+                }
             };
             return Err(error.with_help(flaw.help()));
         }
@@ -122,7 +124,7 @@ impl<'c> Builder<'c> {
     /// The group that geometry takes: the last one before it.
     fn last_material(&self, e: &Element) -> Result<u32, SceneError> {
         match self.scene.materials.len() {
-            0 => Err(SceneError::at(e.place(), format!("<{}> comes before any <ShaderGroup>", e.tag()))
+            0 => Err(SceneError::at(e.place(), SceneProblem::NoGroupAbove { tag: e.tag().to_owned() })
                 .with_help("geometry and background take the last <ShaderGroup> above them")),
             n => Ok(n as u32 - 1),
         }
@@ -152,7 +154,7 @@ impl<'c> Builder<'c> {
         let shape = Shape::Quad { corner, edge_x, edge_y };
         // Edges parallel up to rounding have no normal either.
         if shape.area() <= 1e-6 * edge_x.length() * edge_y.length() {
-            return Err(SceneError::at(e.place(), "this <Quad> has no area")
+            return Err(SceneError::at(e.place(), SceneProblem::NoArea { tag: e.tag().to_owned() })
                 .with_help("`edge_x` and `edge_y` must both have a length and not be parallel"));
         }
         self.geometry.add_single(shape, material, e.place());
@@ -166,7 +168,7 @@ impl<'c> Builder<'c> {
         let place = e.value_place("filename");
         let Some(path) = self.folders.iter().map(|f| within(f, filename)).find(|p| p.is_file()) else {
             let looked: Vec<String> = self.folders.iter().map(|f| f.display().to_string()).collect();
-            return Err(SceneError::at(place, format!("mesh `{filename}` is not found"))
+            return Err(SceneError::at(place, SceneProblem::MeshNotFound { file: filename.to_owned() })
                 .with_help(format!("looked in {}", looked.join(", "))));
         };
         let names = MaterialNames { by_name: &self.by_name, last };
@@ -223,15 +225,12 @@ impl<'c> Builder<'c> {
             group_child(&child, &mut layers, &mut connections, &mut pending)?;
         }
         if layers.is_empty() {
-            return Err(SceneError::at(e.place(), "this <ShaderGroup> has no shader")
+            return Err(SceneError::at(e.place(), SceneProblem::EmptyGroup)
                 .with_help("write `shader NAME LAYER;` in it, or a <Shader name=\"\" layer=\"\"/>"));
         }
         if let Some(param) = pending.first() {
-            return Err(SceneError::at(
-                param.place.clone(),
-                format!("parameter `{}` has no shader after it", param.name),
-            )
-            .with_help("a parameter belongs to the next shader of the group"));
+            return Err(SceneError::at(param.place.clone(), SceneProblem::StrayParameter { name: param.name.clone() })
+                .with_help("a parameter belongs to the next shader of the group"));
         }
         check_connections(&layers, &connections)?;
         let search = self.folders.clone();
@@ -367,14 +366,14 @@ fn check_connections(layers: &[Layer], connections: &[Connection]) -> Result<(),
     for c in connections {
         let find = |layer: &str| {
             names.iter().position(|n| *n == layer).ok_or_else(|| {
-                let error = SceneError::at(c.place.clone(), format!("no layer is named `{layer}`"));
+                let error = SceneError::at(c.place.clone(), SceneProblem::NoSuchLayer { layer: layer.to_owned() });
                 error.with_help(format!("the group's layers are: {}", names.join(", ")))
             })
         };
         if find(&c.source_layer)? >= find(&c.target_layer)? {
-            let message = format!("layer `{}` does not come before layer `{}`", c.source_layer, c.target_layer);
+            let problem = SceneProblem::LayerOrder { source: c.source_layer.clone(), target: c.target_layer.clone() };
             return Err(
-                SceneError::at(c.place.clone(), message).with_help("values flow from earlier layers to later ones")
+                SceneError::at(c.place.clone(), problem).with_help("values flow from earlier layers to later ones")
             );
         }
     }

@@ -67,6 +67,8 @@ impl fmt::Display for CameraFlaw {
     }
 }
 
+impl std::error::Error for CameraFlaw {}
+
 impl Camera {
     /// The least field of view in degrees: below it, the directions of a picture's two edges differ by less than the
     /// last bit of a single.

@@ -1,7 +1,9 @@
-//! The compiler of a scene's shader groups: finds shader files, compiles each once, binds and joins them.
+//! The compiler of a scene's shader groups: finds shaders (in memory, in files, then among those that velour brings
+//! along), compiles each once, binds and joins them.
 
-use super::error::SceneError;
+use super::error::{SceneError, SceneProblem};
 use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Values};
+use super::shipped::shipped;
 use super::source::within;
 use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Shader};
 use crate::exec::Group;
@@ -9,9 +11,9 @@ use crate::ir::lower::Binding;
 use crate::lang::types::{Base, Length, Type};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
-/// Compiles groups from `.osl` files and from shaders in memory.
+/// Compiles groups from `.osl` files, from shaders in memory and from those in the binary.
 #[derive(Debug, Default)]
 pub struct ShaderFiles {
     /// Include folders, macros, header and closures for all shaders.
@@ -40,21 +42,34 @@ impl ShaderFiles {
         if let Some(shader) = self.memory.get(&layer.shader) {
             return Ok(shader.clone());
         }
-        let Some(path) = find(&layer.shader, search) else {
+        let compiled = if let Some(path) = find(&layer.shader, search) {
+            self.once(&path, || self.compiler.compile_file(&path))
+        } else if let Some((file, text)) = shipped(&layer.shader) {
+            self.once(Path::new(file), || self.compiler.compile(file, text))
+        } else {
             let folders: Vec<String> = search.iter().map(|folder| folder.display().to_string()).collect();
-            let message = format!("shader `{}` is not found", layer.shader);
+            let problem = SceneProblem::ShaderNotFound { shader: layer.shader.clone() };
             let help = format!("no `{}.osl` in {}; add folders with --path", layer.shader, folders.join(", "));
-            return Err(SceneError::at(layer.place.clone(), message).with_help(help));
+            return Err(SceneError::at(layer.place.clone(), problem).with_help(help));
         };
+        compiled.map_err(|error| {
+            let problem = SceneProblem::Shader { shader: layer.shader.clone(), error: Arc::new(error) };
+            SceneError::at(layer.place.clone(), problem)
+        })
+    }
+
+    /// The shader of a file, compiled when it is asked for first.
+    fn once(
+        &self,
+        path: &Path,
+        compile: impl FnOnce() -> Result<Shader, CompileError>,
+    ) -> Result<Shader, CompileError> {
         let mut files = self.files.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if let Some(shader) = files.get(&path) {
+        if let Some(shader) = files.get(path) {
             return Ok(shader.clone());
         }
-        let shader = self.compiler.compile_file(&path).map_err(|error| {
-            let message = format!("shader `{}` does not compile\n{error}", layer.shader);
-            SceneError::at(layer.place.clone(), message)
-        })?;
-        files.insert(path, shader.clone());
+        let shader = compile()?;
+        files.insert(path.to_owned(), shader.clone());
         Ok(shader)
     }
 }
@@ -120,5 +135,6 @@ fn placed(error: GroupError, spec: &GroupSpec) -> SceneError {
             joined.map(|c| &c.place).or(layer(name).map(|layer| &layer.place))
         }
     };
-    SceneError::at(place.unwrap_or(&spec.place).clone(), error.message).with_help(error.help)
+    let (place, help) = (place.unwrap_or(&spec.place).clone(), error.help.clone());
+    SceneError::at(place, SceneProblem::Group(error)).with_help(help)
 }

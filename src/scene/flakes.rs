@@ -1,9 +1,10 @@
 //! Small triangles scattered in a box and turned at random: sequins, snow, or a thousand little lamps.
 
-use super::error::{Place, SceneError};
+use super::error::{Place, SceneError, SceneProblem};
 use super::geometry::{Geometry, Object, Primitive, Shape};
 use super::weave::MOST_TRIANGLES;
 use super::xml::Element;
+use crate::math::elementary::sincos;
 use crate::math::noise::lookup3::hash2;
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -36,7 +37,7 @@ impl Flakes {
             seed: e.whole("seed", 1, 0..=u32::MAX)?,
         };
         if flakes.low.cmpgt(flakes.high).any() {
-            return Err(SceneError::at(e.place(), "`low` of this <Flakes> is above `high`")
+            return Err(SceneError::at(e.place(), SceneProblem::InsideOut { tag: e.tag().to_owned() })
                 .with_help("`low` has the least x, y and z of the box, `high` the greatest"));
         }
         Ok(flakes)
@@ -52,11 +53,11 @@ impl Flakes {
             let [r, q] = [0, 1].map(|set| sobol_burley::sample_4d(i % (1 << 16), set, seed));
             let center = self.low + (self.high - self.low) * Vec3::new(r[0], r[1], r[2]);
             let z = 1.0 - 2.0 * q[0];
-            let (sin, cos) = (TAU * q[1]).sin_cos();
+            let (sin, cos) = sincos(TAU * q[1]);
             let flat = (1.0 - z * z).max(0.0).sqrt();
             let (x, y) = Vec3::new(flat * cos, flat * sin, z).any_orthonormal_pair();
             let corner = |third: f32| {
-                let (sin, cos) = (TAU * (q[2] + third / 3.0)).sin_cos();
+                let (sin, cos) = sincos(TAU * (q[2] + third / 3.0));
                 // The side of the triangle is `size`.
                 center + (x * cos + y * sin) * (self.size / 3f32.sqrt())
             };

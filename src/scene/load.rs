@@ -1,7 +1,7 @@
 //! How a file, or the text itself, becomes a scene.
 
 use super::build::Builder;
-use super::error::SceneError;
+use super::error::{SceneError, SceneProblem};
 use super::group::GroupCompiler;
 use super::scene::Scene;
 use super::source::SceneSource;
@@ -23,7 +23,7 @@ impl Scene {
         let document = xml::parse(&source.text, &source.name)?;
         let root = xml::Element { node: document.root_element(), file: source.name.clone() };
         if root.tag() != "World" {
-            return Err(SceneError::at(root.place(), format!("the scene's root is <{}>", root.tag()))
+            return Err(SceneError::at(root.place(), SceneProblem::NotAWorld { tag: root.tag().to_owned() })
                 .with_help("a scene is one <World> element"));
         }
         let mut folders = vec![source.folder.clone()];

@@ -1,6 +1,6 @@
 //! Reads OBJ meshes, with the material names of their MTL files.
 
-use super::error::{Place, SceneError};
+use super::error::{MeshFlaw, Place, SceneError, SceneProblem};
 use super::geometry::{Geometry, Object, Primitive, Shape};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
@@ -27,7 +27,7 @@ pub fn add_mesh(
     names: &MaterialNames,
     place: &Place,
 ) -> Result<usize, SceneError> {
-    let fail = |what: String| SceneError::at(place.clone(), format!("mesh `{}`: {what}", path.display()));
+    let fail = |flaw| SceneError::at(place.clone(), SceneProblem::Mesh { file: path.display().to_string(), flaw });
     let options =
         tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
     let (models, materials) = tobj::load_obj(path, &options).map_err(|e| fail(complaint(&e)))?;
@@ -53,17 +53,17 @@ pub fn add_mesh(
     }
     share_area(geometry, shape_start);
     if models.iter().all(|m| m.mesh.indices.is_empty()) {
-        return Err(fail("it has no faces".into()));
+        return Err(fail(MeshFlaw::NoFaces));
     }
     Ok(degenerate)
 }
 
 /// What is wrong with a mesh file, for people.
-fn complaint(error: &tobj::LoadError) -> String {
+fn complaint(error: &tobj::LoadError) -> MeshFlaw {
     match error {
-        tobj::LoadError::ReadError => "it is not text, so it is no OBJ file".to_owned(),
-        tobj::LoadError::OpenFileFailed => "it cannot be opened".to_owned(),
-        other => other.to_string(),
+        tobj::LoadError::ReadError => MeshFlaw::NotText,
+        tobj::LoadError::OpenFileFailed => MeshFlaw::Unopened,
+        other => MeshFlaw::NotObj { reason: other.to_string() },
     }
 }
 
@@ -73,9 +73,9 @@ fn share_area(geometry: &mut Geometry, start: usize) {
     geometry.objects[start..].iter_mut().for_each(|o| o.surface_area = total);
 }
 
-fn add_shape(geometry: &mut Geometry, mesh: &tobj::Mesh, material: u32, place: &Place) -> Result<usize, String> {
+fn add_shape(geometry: &mut Geometry, mesh: &tobj::Mesh, material: u32, place: &Place) -> Result<usize, MeshFlaw> {
     if mesh.positions.iter().any(|x| !x.is_finite()) {
-        return Err("a vertex is not a finite number".into());
+        return Err(MeshFlaw::NotFinite);
     }
     let position = |i: u32| mesh.positions.get(3 * i as usize..3 * i as usize + 3).map(Vec3::from_slice);
     let normal = |i: u32| mesh.normals.get(3 * i as usize..3 * i as usize + 3).map(Vec3::from_slice);
@@ -84,7 +84,7 @@ fn add_shape(geometry: &mut Geometry, mesh: &tobj::Mesh, material: u32, place: &
     let (mut area, mut degenerate) = (0.0f64, 0);
     for (face, corners) in mesh.indices.chunks_exact(3).enumerate() {
         let Some([a, b, c]) = three(corners, position) else {
-            return Err("a face names a vertex that is not there".into());
+            return Err(MeshFlaw::NoSuchVertex);
         };
         let shape = Shape::Triangle { a, b, c };
         if shape.area() <= 0.0 {

@@ -16,6 +16,7 @@ mod nearest;
 // The data of the room, which is called as the room is.
 #[allow(clippy::module_inception)]
 mod scene;
+mod shipped;
 mod source;
 mod spec;
 mod weave;
@@ -23,10 +24,11 @@ mod xml;
 
 pub use camera::{Camera, CameraFlaw};
 pub use compiler::ShaderFiles;
-pub use error::{Place, SceneError};
+pub use error::{MeshFlaw, Place, SceneError, SceneProblem};
 pub use geometry::{Geometry, Object, Primitive, Shape};
 pub use group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
 pub use nearest::nearest;
 pub use scene::{Background, Material, Options, Scene};
+pub use shipped::SHIPPED;
 pub use source::SceneSource;
 pub use spec::parse_group;

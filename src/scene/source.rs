@@ -1,6 +1,6 @@
 //! Where a scene's text comes from, and where the files that it names are looked for.
 
-use super::error::SceneError;
+use super::error::{SceneError, SceneProblem};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -22,8 +22,9 @@ impl SceneSource {
             return Ok(SceneSource { name: "<scene text>".into(), text: argument.to_owned(), folder: ".".into() });
         }
         let path = Path::new(argument);
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| SceneError::nowhere(format!("cannot read the scene `{argument}`: {e}")))?;
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            SceneError::nowhere(SceneProblem::Unreadable { scene: argument.to_owned(), error: Arc::new(error) })
+        })?;
         let folder = match path.parent() {
             Some(parent) if parent != Path::new("") => parent.to_owned(),
             _ => ".".into(),

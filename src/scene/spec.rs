@@ -1,6 +1,6 @@
 //! Parses a shader group's text: `param`, `shader` and `connect` statements, quotes optional, ended by `;` or `,`.
 
-use super::error::{Place, SceneError};
+use super::error::{Place, SceneError, SceneProblem};
 use super::group::{Connection, Layer, ParamType, ParamValue, Values};
 use super::nearest::nearest;
 
@@ -92,7 +92,7 @@ impl<'t> Parser<'t> {
             word => {
                 let shown = if word.is_empty() { self.until(&[' ', '\n', ';', ',']) } else { word };
                 let known: Vec<&str> = ["param", "shader", "connect"].into_iter().chain(ParamType::NAMES).collect();
-                let error = SceneError::at(place, format!("unknown statement `{shown}` in a shader group"));
+                let error = SceneError::at(place, SceneProblem::UnknownStatement { word: shown.to_owned() });
                 Err(error.with_help(match nearest(shown, &known) {
                     Some(name) => format!("did you mean `{name}`?"),
                     None => "a statement begins with `param` (or a type), `shader` or `connect`".into(),
@@ -107,8 +107,8 @@ impl<'t> Parser<'t> {
             return Ok(());
         }
         let place = self.here();
-        let found = self.until(&[' ', '\t', '\r', '\n', ';', ',']);
-        Err(SceneError::at(place, format!("`;` expected, found `{found}`"))
+        let found = self.until(&[' ', '\t', '\r', '\n', ';', ',']).to_owned();
+        Err(SceneError::at(place, SceneProblem::UnendedStatement { found })
             .with_help("end each statement with `;`; a parameter takes no more values than its type has"))
     }
 
@@ -141,7 +141,7 @@ impl<'t> Parser<'t> {
         const STOPS: [char; 7] = [' ', '\t', '\r', '\n', '.', ',', ';'];
         let layer = self.name("a layer's name", &STOPS)?;
         if !self.take_char('.') {
-            return Err(SceneError::at(self.here(), format!("`.` expected after layer `{layer}`"))
+            return Err(SceneError::at(self.here(), SceneProblem::NoParameter { layer })
                 .with_help("a connection is written `connect LAYER.OUTPUT LAYER.INPUT`"));
         }
         Ok((layer, self.name("a parameter's name", &[' ', '\t', '\r', '\n', ',', ';'])?))
@@ -156,7 +156,7 @@ impl<'t> Parser<'t> {
         let place = self.here();
         let name = self.until(stops);
         if name.is_empty() {
-            return Err(SceneError::at(place, format!("{what} expected")));
+            return Err(SceneError::at(place, SceneProblem::NameMissing { what: what.to_owned() }));
         }
         Ok(name.to_owned())
     }
@@ -181,12 +181,12 @@ impl<'t> Parser<'t> {
                 c => out.push(c),
             }
         }
-        Err(SceneError::at(place, "this string has no closing quote"))
+        Err(SceneError::at(place, SceneProblem::OpenString))
     }
 
     fn parameter(&mut self, kind_name: &str, type_place: Place) -> Result<(), SceneError> {
         let Some(kind) = ParamType::from_name(kind_name) else {
-            let error = SceneError::at(type_place, format!("unknown parameter type `{kind_name}`"));
+            let error = SceneError::at(type_place, SceneProblem::UnknownType { word: kind_name.to_owned() });
             return Err(match nearest(kind_name, &ParamType::NAMES) {
                 Some(name) => error.with_help(format!("did you mean `{name}`?")),
                 None => error.with_help(format!("known types: {}", ParamType::NAMES.join(", "))),
@@ -197,7 +197,7 @@ impl<'t> Parser<'t> {
         let place = self.here();
         let name = self.until(&[' ', '\t', '\r', '\n', ',', ';', '"']).to_owned();
         if name.is_empty() {
-            return Err(SceneError::at(place, "a parameter's name expected"));
+            return Err(SceneError::at(place, SceneProblem::NameMissing { what: "a parameter's name".to_owned() }));
         }
         let (values, array) = self.values(kind, array)?;
         self.hints()?;
@@ -220,7 +220,7 @@ impl<'t> Parser<'t> {
                     .parse()
                     .ok()
                     .filter(|n| (1..=1 << 24).contains(n))
-                    .ok_or_else(|| SceneError::at(place, format!("`{digits}` is no array length")))?,
+                    .ok_or_else(|| SceneError::at(place, SceneProblem::ArrayLength { text: digits.to_owned() }))?,
             ),
         };
         self.take_char(']');
@@ -318,20 +318,20 @@ impl<'t> Parser<'t> {
             let kind = self.word();
             let name = self.word();
             if kind != "int" || !["lockgeom", "interpolated", "interactive"].contains(&name) {
-                return Err(SceneError::at(place, format!("unknown hint `{kind} {name}`"))
+                return Err(SceneError::at(place, SceneProblem::UnknownHint { hint: format!("{kind} {name}") })
                     .with_help("known hints: int lockgeom, int interpolated, int interactive"));
             }
             let value =
                 if self.take_char('=') { self.until(&[' ', ',', ']', ';', '\n']).parse::<i32>().ok() } else { None };
             if value.is_none() {
-                return Err(SceneError::at(place, format!("hint `{name}` needs `= INTEGER`")));
+                return Err(SceneError::at(place, SceneProblem::HintWithoutValue { hint: name.to_owned() }));
             }
             if !self.take_char(',') {
                 break;
             }
         }
         if !(self.take_char(']') && self.take_char(']')) {
-            return Err(SceneError::at(self.here(), "`]]` expected at the end of the hints"));
+            return Err(SceneError::at(self.here(), SceneProblem::OpenHints));
         }
         Ok(())
     }

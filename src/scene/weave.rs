@@ -1,8 +1,9 @@
 //! Woven cloth made of yarns: tubes that pass over and under each other, as triangles.
 
-use super::error::{Place, SceneError};
+use super::error::{Place, SceneError, SceneProblem};
 use super::geometry::{Geometry, Object, Primitive, Shape};
 use super::xml::Element;
+use crate::math::elementary::{cos, sin, sincos};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -102,13 +103,13 @@ impl Weave {
             depth: e.real("depth", 0.0, 0.0..=1e6)?,
         };
         if weave.edge_x.cross(weave.edge_y).length() <= 1e-6 * weave.edge_x.length() * weave.edge_y.length() {
-            return Err(SceneError::at(e.place(), "this <Weave> has no area")
+            return Err(SceneError::at(e.place(), SceneProblem::NoArea { tag: e.tag().to_owned() })
                 .with_help("`edge_x` and `edge_y` must both have a length and not be parallel"));
         }
-        let triangles = weave.triangles();
-        if triangles > MOST_TRIANGLES {
-            let message = format!("this <Weave> would have {triangles} triangles, {MOST_TRIANGLES} are the most");
-            return Err(SceneError::at(e.place(), message)
+        let count = weave.triangles();
+        if count > MOST_TRIANGLES {
+            let problem = SceneProblem::TooManyTriangles { tag: e.tag().to_owned(), count, most: MOST_TRIANGLES };
+            return Err(SceneError::at(e.place(), problem)
                 .with_help("lower `warp`, `weft`, `segments` or `sides`; the count is 4 times their product"));
         }
         Ok(weave)
@@ -139,7 +140,7 @@ impl Weave {
     fn ground(&self, x: f32, y: f32) -> Vec3 {
         let normal = self.edge_x.cross(self.edge_y).normalize();
         // Folds run toward one corner and fade, so that they look laid, not milled.
-        let wave = (TAU * self.folds * (x + 0.15 * (PI * y).sin())).sin() * (0.55 + 0.45 * (PI * (y + 0.3 * x)).cos());
+        let wave = sin(TAU * self.folds * (x + 0.15 * sin(PI * y))) * (0.55 + 0.45 * cos(PI * (y + 0.3 * x)));
         self.corner + x * self.edge_x + y * self.edge_y + self.depth * wave * normal
     }
 
@@ -206,7 +207,7 @@ impl Weave {
         let side = (sidewise - tangent * sidewise.dot(tangent)).normalize_or(Vec3::Z);
         let top = tangent.cross(side) * turn;
         let at = |i: u32| {
-            let (sin, cos) = (TAU * i as f32 / self.sides as f32).sin_cos();
+            let (sin, cos) = sincos(TAU * i as f32 / self.sides as f32);
             let point = center(along) + side * (half_width * cos) + top * (half_height * sin);
             let normal = side * (half_height * cos) + top * (half_width * sin);
             (point, normal.normalize_or(top))

@@ -1,6 +1,6 @@
 //! Elements of the scene's XML, with the place of each attribute and complaints that name what is known.
 
-use super::error::{Place, SceneError};
+use super::error::{Place, SceneError, SceneProblem};
 use super::nearest::nearest;
 use glam::Vec3;
 use roxmltree::{Attribute, Document, Node};
@@ -23,8 +23,8 @@ pub fn parse<'i>(text: &'i str, file: &Arc<str>) -> Result<Document<'i>, SceneEr
         let place = Place { file: file.clone(), line: pos.row, column: pos.col };
         // The parser ends its sentence with the position, which the place already says.
         let message = e.to_string();
-        let message = message.split(" at ").next().unwrap_or(&message).to_owned();
-        SceneError::at(place, format!("the scene is not well-formed XML: {message}"))
+        let reason = message.split(" at ").next().unwrap_or(&message).to_owned();
+        SceneError::at(place, SceneProblem::NotXml { reason })
     })
 }
 
@@ -64,7 +64,7 @@ impl<'d, 'i> Element<'d, 'i> {
                 // Entities make the text shorter than its source; then the start has to do.
                 let exact = text.range().len() == written.len();
                 let place = self.place_at(text.range().start + if exact { at } else { 0 });
-                let error = SceneError::at(place, format!("text in <{}>, which holds only elements", self.tag()));
+                let error = SceneError::at(place, SceneProblem::StrayText { tag: self.tag().to_owned() });
                 return Err(error.with_help("remove it, or put it between `<!--` and `-->`"));
             }
         }
@@ -85,7 +85,8 @@ impl<'d, 'i> Element<'d, 'i> {
     /// An unknown tag: says which one was meant.
     pub fn unknown_tag(&self, known: &[&str]) -> SceneError {
         let tag = self.tag();
-        SceneError::at(self.place(), format!("unknown tag <{tag}>")).with_help(match nearest(tag, known) {
+        let problem = SceneProblem::UnknownTag { tag: tag.to_owned() };
+        SceneError::at(self.place(), problem).with_help(match nearest(tag, known) {
             Some(name) => format!("did you mean <{name}>?"),
             None => format!("known tags here: {}", known.join(", ")),
         })
@@ -97,7 +98,8 @@ impl<'d, 'i> Element<'d, 'i> {
             let name = attribute.name();
             if !known.contains(&name) {
                 let place = self.place_at(attribute.range().start);
-                let error = SceneError::at(place, format!("<{}> has no attribute `{name}`", self.tag()));
+                let (tag, attribute) = (self.tag().to_owned(), name.to_owned());
+                let error = SceneError::at(place, SceneProblem::UnknownAttribute { tag, attribute });
                 return Err(match nearest(name, known) {
                     Some(name) => error.with_help(format!("did you mean `{name}`?")),
                     None if known.is_empty() => error,
@@ -110,9 +112,10 @@ impl<'d, 'i> Element<'d, 'i> {
 
     /// A required attribute.
     pub fn required(&self, name: &str) -> Result<&'d str, SceneError> {
-        self.node
-            .attribute(name)
-            .ok_or_else(|| SceneError::at(self.place(), format!("<{}> needs the attribute `{name}`", self.tag())))
+        self.node.attribute(name).ok_or_else(|| {
+            let (tag, attribute) = (self.tag().to_owned(), name.to_owned());
+            SceneError::at(self.place(), SceneProblem::MissingAttribute { tag, attribute })
+        })
     }
 
     /// A triple `x,y,z`, when the attribute is there.
@@ -162,8 +165,13 @@ impl<'d, 'i> Element<'d, 'i> {
     }
 
     /// An attribute whose value is not what it should be.
-    pub fn bad_value(&self, name: &str, what: &str) -> SceneError {
-        let value = self.node.attribute(name).unwrap_or_default();
-        SceneError::at(self.value_place(name), format!("`{name}` of <{}> is `{value}`: {what} expected", self.tag()))
+    pub fn bad_value(&self, name: &str, expected: &str) -> SceneError {
+        let problem = SceneProblem::BadValue {
+            tag: self.tag().to_owned(),
+            attribute: name.to_owned(),
+            value: self.node.attribute(name).unwrap_or_default().to_owned(),
+            expected: expected.to_owned(),
+        };
+        SceneError::at(self.value_place(name), problem)
     }
 }

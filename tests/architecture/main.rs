@@ -37,7 +37,6 @@ const CIRCLES: &[&[&str]] = &[
         "bsdf/microfacet/mod.rs",
     ],
     &["bsdf/sheen/albedo.rs", "bsdf/sheen/fits.rs", "bsdf/sheen/shadowing.rs"],
-    &["check/call.rs", "check/rank.rs"],
     &[
         "closure/curves.rs",
         "closure/flatten.rs",
@@ -55,8 +54,6 @@ const CIRCLES: &[&[&str]] = &[
         "closure/sampling.rs",
         "closure/surfaces.rs",
     ],
-    &["compile/builder.rs", "compile/mod.rs"],
-    &["ir/lower/mod.rs", "ir/lower/value.rs"],
     &[
         "lang/closures/boundaries.rs",
         "lang/closures/classic.rs",
@@ -105,8 +102,6 @@ const OPEN: &[(&str, &str, usize)] = &[
     ("exec/points.rs", "Global", 1),
     ("exec/routines.rs", "Attribute", 1),
     ("exec/routines.rs", "Routine", 3),
-    ("ir/build.rs", "Binary", 1),
-    ("ir/lower/statement.rs", "Stmt", 1),
     ("ir/verify.rs", "Instr", 1),
     ("math/instruction_set.rs", "InstructionSet", 1),
     ("measure/verify/closure.rs", "ParamKind", 3),
@@ -116,7 +111,6 @@ const OPEN: &[(&str, &str, usize)] = &[
     ("optimize/derive/mod.rs", "Routine", 1),
     ("optimize/derive/rules.rs", "Binary", 2),
     ("optimize/derive/rules.rs", "Unary", 1),
-    ("optimize/uniform.rs", "Instr", 1),
 ];
 
 /// The room of a file of `src`.

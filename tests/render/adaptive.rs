@@ -81,7 +81,9 @@ fn a_render_stops_at_its_time_and_has_a_picture() {
 #[test]
 fn nonsense_is_refused() {
     for noise in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        assert!(Settings { noise: Some(noise), ..Settings::default() }.check().unwrap_err().contains("0.01"));
+        assert!(
+            Settings { noise: Some(noise), ..Settings::default() }.check().unwrap_err().to_string().contains("0.01")
+        );
     }
     for seconds in [0.0, -1.0, f64::NAN] {
         assert!(Settings { seconds: Some(seconds), ..Settings::default() }.check().is_err());

@@ -2,60 +2,62 @@
 
 use crate::check::typed::*;
 use std::collections::{BTreeSet, HashMap};
+use std::rc::Rc;
 
 /// What a piece of code does besides computing a value.
 #[derive(Clone, Debug, Default)]
-pub struct Effects {
-    /// Variables it assigns, those of called functions included.
-    pub vars: BTreeSet<VarId>,
-    /// Variables it declares, those of called functions included; they end with it.
-    pub declared: BTreeSet<VarId>,
+pub(super) struct Effects {
+    /// Variables it assigns, in functions it calls too but for their own.
+    pub(super) vars: BTreeSet<VarId>,
+    /// Variables it declares, but for those of called functions; they end with it.
+    pub(super) declared: BTreeSet<VarId>,
     /// True when it prints or reports.
-    pub prints: bool,
+    pub(super) prints: bool,
     /// True when it can call `exit()`.
-    pub exits: bool,
+    pub(super) exits: bool,
     /// True when it returns from the body it stands in.
-    pub returns: bool,
+    pub(super) returns: bool,
     /// True when it is worth skipping in lanes that do not need it.
-    pub costly: bool,
+    pub(super) costly: bool,
 }
 
 /// Computes effects, remembering those of functions.
 #[derive(Default)]
-pub struct Assigned {
-    functions: HashMap<FunctionId, Effects>,
+pub(super) struct Assigned {
+    functions: HashMap<FunctionId, Rc<Effects>>,
 }
 
 impl Effects {
     /// True when running the code in a lane that does not need it would be seen.
-    pub fn seen(&self) -> bool {
+    pub(super) fn seen(&self) -> bool {
         !self.vars.is_empty() || self.prints || self.exits
     }
 }
 
 impl Assigned {
     /// Effects of statements.
-    pub fn of_stmts(&mut self, shader: &Shader, stmts: &[Stmt]) -> Effects {
+    pub(super) fn of_stmts(&mut self, shader: &Shader, stmts: &[Stmt]) -> Effects {
         let mut effects = Effects::default();
         self.stmts(shader, stmts, &mut effects);
         effects
     }
 
     /// Effects of an expression.
-    pub fn of_expr(&mut self, shader: &Shader, expr: &Expr) -> Effects {
+    pub(super) fn of_expr(&mut self, shader: &Shader, expr: &Expr) -> Effects {
         let mut effects = Effects::default();
         self.expr(shader, expr, &mut effects);
         effects
     }
 
     /// Effects of a function's body; its own return stays inside it.
-    pub fn of_function(&mut self, shader: &Shader, id: FunctionId) -> Effects {
+    pub(super) fn of_function(&mut self, shader: &Shader, id: FunctionId) -> Rc<Effects> {
         if let Some(known) = self.functions.get(&id) {
             return known.clone();
         }
         let mut effects = self.of_stmts(shader, &shader.functions[id.0 as usize].body);
         effects.returns = false;
         effects.declared.extend(shader.functions[id.0 as usize].params.iter().map(|param| param.0));
+        let effects = Rc::new(effects);
         self.functions.insert(id, effects.clone());
         effects
     }
@@ -142,8 +144,8 @@ impl Assigned {
                 out.costly = true;
                 self.args(shader, args, out);
                 let callee = self.of_function(shader, *id);
-                out.vars.extend(callee.vars);
-                out.declared.extend(callee.declared);
+                // What the function declares ends with it, so that chains of calls do not gather it.
+                out.vars.extend(callee.vars.difference(&callee.declared));
                 out.prints |= callee.prints;
                 out.exits |= callee.exits;
             }

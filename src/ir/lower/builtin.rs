@@ -1,11 +1,12 @@
 //! Builtin functions, each written out as operations on single numbers or as one routine.
 
-use super::Lower;
+use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::{Argument, Expr, ExprKind, VarId};
 use crate::ir::op::*;
 use crate::ir::program::*;
-use crate::lang::types::{Base, Type};
+use crate::lang::types::Base;
+use velour_grammar::Span;
 
 impl Lower<'_> {
     /// A call of a builtin.
@@ -36,20 +37,6 @@ impl Lower<'_> {
         let regs: Vec<&[Reg]> = values.iter().map(Vec::as_slice).collect();
         self.at(call.span);
         Value::Regs(self.plain(name, &regs, args, call))
-    }
-
-    /// The registers of read-only arguments, kept from changes that later arguments make.
-    pub(super) fn arguments(&mut self, args: &[Argument]) -> Vec<Vec<Reg>> {
-        let mut out: Vec<Vec<Reg>> = Vec::new();
-        for arg in args {
-            if let Argument::In(expr) = arg {
-                if self.assigned.of_expr(self.shader, expr).seen() {
-                    out = out.into_iter().map(|regs| regs.into_iter().map(|r| self.fixed(r)).collect()).collect();
-                }
-                out.push(self.expr_regs(expr));
-            }
-        }
-        out
     }
 
     /// Functions whose arguments are only read.
@@ -211,7 +198,7 @@ impl Lower<'_> {
         let value = match arg {
             Argument::In(expr) => self.expr(expr),
             Argument::Out(place) => {
-                let target = self.target(place);
+                let target = self.target(place, Span::NONE);
                 self.load(&target)
             }
         };
@@ -241,120 +228,22 @@ impl Lower<'_> {
     }
 
     fn spline(&mut self, name: &str, args: &[Argument], call: &Expr) -> Value {
-        let exprs: Vec<&Expr> =
-            args.iter().filter_map(|a| if let Argument::In(e) = a { Some(e) } else { None }).collect();
-        let (basis, x) = (self.reg(exprs[0]), self.reg(exprs[1]));
-        let (basis, x) = (self.fixed(basis), self.fixed(x));
-        let count = (exprs.len() == 4).then(|| self.reg(exprs[2]));
-        let array = self.expr(exprs[exprs.len() - 1]);
-        let knots: Vec<Vec<Reg>> = self.elements(&array).iter().map(|knot| self.regs(knot)).collect();
-        let count = count.unwrap_or_else(|| self.b.int(knots.len() as i32));
+        let exprs: Vec<&Expr> = args.iter().filter_map(Argument::read).collect();
+        let values = self.operands(&exprs);
+        let Some((array, numbers)) = values.split_last() else { return Value::Regs(Vec::new()) };
+        let numbers: Vec<Reg> = numbers.iter().flat_map(|value| self.regs(value)).collect();
+        let knots: Vec<Vec<Reg>> = self.elements(array).iter().map(|knot| self.regs(knot)).collect();
+        let count = numbers.get(2).copied().unwrap_or_else(|| self.b.int(knots.len() as i32));
         let components = call.ty.base().map_or(1, Base::floats);
         let mut out = Vec::new();
         for c in 0..components {
-            let src: Vec<Reg> = [basis, x, count].into_iter().chain(knots.iter().map(|knot| knot[c])).collect();
+            let src: Vec<Reg> =
+                [numbers[0], numbers[1], count].into_iter().chain(knots.iter().map(|knot| knot[c])).collect();
             let count = knots.len() as u32;
             let function = if name == "spline" { Smooth::Spline(count) } else { Smooth::SplineInverse(count) };
             out.push(self.b.call(Routine::Smooth(function), src, self.span)[0]);
         }
         Value::Regs(out)
-    }
-
-    /// Functions that write some of their arguments.
-    fn writing_call(&mut self, name: &str, args: &[Argument], call: &Expr) -> Value {
-        if name == "sincos" {
-            let x = self.arguments(args).swap_remove(0);
-            let sin = x.iter().map(|&reg| self.b.unary(Unary::Sin, reg)).collect();
-            let cos = x.iter().map(|&reg| self.b.unary(Unary::Cos, reg)).collect();
-            self.write_out(&args[1], &Value::Regs(sin));
-            self.write_out(&args[2], &Value::Regs(cos));
-            return Value::Regs(Vec::new());
-        }
-        let inputs: Vec<Reg> = self.arguments(args).concat();
-        self.at(call.span);
-        let found = match name {
-            "getmatrix" => {
-                let (matrix, found) = self.space_matrix(inputs[0], inputs[1]);
-                self.write_out(&args[2], &Value::Regs(matrix));
-                found
-            }
-            "getattribute" => self.attribute(args, inputs),
-            "split" => self.split(args, inputs),
-            _ => self.regex(name == "regex_match", args, inputs),
-        };
-        Value::Regs(vec![found])
-    }
-
-    pub(super) fn write_out(&mut self, arg: &Argument, value: &Value) {
-        if let Argument::Out(place) = arg {
-            let target = self.target(place);
-            self.write(&target, value);
-        }
-    }
-
-    fn attribute(&mut self, args: &[Argument], mut inputs: Vec<Reg>) -> Reg {
-        let Some(out @ Argument::Out(place)) = args.last() else { return self.b.int(0) };
-        let leading = args.iter().filter(|arg| arg.ty() == &Type::STRING && matches!(arg, Argument::In(_))).count();
-        if leading == 1 {
-            let object = self.symbol("");
-            inputs.insert(0, object);
-        }
-        let target = self.target(place);
-        let old = self.load(&target);
-        let items = if place.ty.is_array() { self.elements(&old) } else { vec![old.clone()] };
-        let old: Vec<Reg> = items.iter().flat_map(|item| self.regs(item)).collect();
-        let kind = old.first().map_or(Kind::Int, |&reg| self.b.program.kind(reg));
-        let count = old.len() as u32;
-        let ty = match kind {
-            Kind::Float => AttributeType::Floats(count),
-            Kind::String => AttributeType::Strings(count),
-            _ => AttributeType::Ints(count),
-        };
-        let results = self.b.call(Routine::Attribute(AttributeQuery { ty, slopes: false }), inputs, self.span);
-        let new: Vec<Reg> =
-            results[1..].iter().zip(&old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
-        self.write_flat(out, &new);
-        results[0]
-    }
-
-    /// Writes registers to an output argument, element by element.
-    fn write_flat(&mut self, arg: &Argument, regs: &[Reg]) {
-        let Argument::Out(place) = arg else { return };
-        if !place.ty.is_array() {
-            return self.write_out(arg, &Value::Regs(regs.to_vec()));
-        }
-        let target = self.target(place);
-        let array = self.load(&target);
-        let elements = self.elements(&array);
-        let width = regs.len() / elements.len().max(1);
-        for (element, part) in elements.iter().zip(regs.chunks(width.max(1))) {
-            self.store(element, &Value::Regs(part.to_vec()));
-        }
-    }
-
-    fn regex(&mut self, whole: bool, args: &[Argument], inputs: Vec<Reg>) -> Reg {
-        let positions = args.iter().find(|arg| matches!(arg, Argument::Out(_)));
-        let count = positions.map_or(0, |arg| self.length_of(arg)) as u32;
-        let results = self.b.call(Routine::Regex { whole, positions: count }, inputs, self.span);
-        if let Some(arg) = positions {
-            self.write_flat(arg, &results[1..]);
-        }
-        results[0]
-    }
-
-    fn split(&mut self, args: &[Argument], mut inputs: Vec<Reg>) -> Reg {
-        let count = self.length_of(&args[1]);
-        if inputs.len() < 2 {
-            let spaces = self.symbol("");
-            inputs.push(spaces);
-        }
-        if inputs.len() < 3 {
-            let most = self.b.int(count as i32);
-            inputs.push(most);
-        }
-        let results = self.b.call(Routine::Split(count as u32), inputs, self.span);
-        self.write_flat(&args[1], &results[1..]);
-        results[0]
     }
 }
 

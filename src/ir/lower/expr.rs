@@ -1,6 +1,6 @@
 //! Expressions.
 
-use super::Lower;
+use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::*;
 use crate::ir::op::Input;
@@ -9,6 +9,7 @@ use crate::lang::closures::ClosureId;
 use crate::lang::globals::Global;
 use crate::lang::symbols::Symbol;
 use crate::lang::types::{Base, Type};
+use velour_grammar::Span;
 use velour_grammar::ast::BinaryOp;
 
 impl Lower<'_> {
@@ -39,8 +40,8 @@ impl Lower<'_> {
             ExprKind::Unary(op, operand) => Value::Regs(self.unary(*op, operand)),
             ExprKind::Binary(op @ (BinaryOp::And | BinaryOp::Or), a, b) => single(self.logic(*op, a, b)),
             ExprKind::Binary(op, a, b) => {
-                let (left, right) = self.pair(a, b);
-                Value::Regs(self.binary(*op, (&left, &a.ty), (&right, &b.ty), &expr.ty))
+                let regs = self.bare_regs(&[a, b]);
+                Value::Regs(self.binary(*op, (&regs[0], &a.ty), (&regs[1], &b.ty), &expr.ty))
             }
             ExprKind::Ternary(c, a, b) => self.ternary(c, a, b, &expr.ty),
             ExprKind::Comma(items) => {
@@ -51,45 +52,28 @@ impl Lower<'_> {
                 last
             }
             ExprKind::Assign(place, value) => {
-                let value = self.expr(value);
+                let (value, target) = self.with_place(value, place, expr.span);
                 let value = self.stable(&value);
-                let target = self.target(place);
                 self.write(&target, &value);
                 value
             }
-            ExprKind::Update(op, place, value) => self.update(*op, place, value),
-            ExprKind::Step { place, increment, prefix } => self.step(place, *increment, *prefix),
+            ExprKind::Update(op, place, value) => self.update(*op, place, value, expr.span),
+            ExprKind::Step { place, increment, prefix } => self.step(place, *increment, *prefix, expr.span),
             ExprKind::Call(id, args) => self.call(*id, args),
             ExprKind::Builtin(name, args) => self.builtin(name, args, expr),
             ExprKind::Closure(id, params, keywords) => single(self.closure(*id, params, keywords, expr)),
-            ExprKind::Construct(parts) => Value::Regs(parts.iter().map(|part| self.reg(part)).collect()),
+            ExprKind::Construct(parts) => {
+                let parts: Vec<&Expr> = parts.iter().collect();
+                Value::Regs(self.operand_regs(&parts).concat())
+            }
             ExprKind::ConstructIn(space, parts) => Value::Regs(self.construct_in(space, parts, expr)),
             ExprKind::SpaceToSpace(from, to) => {
-                let (from, to) = (self.reg(from), self.reg(to));
-                Value::Regs(self.space_matrix(from, to).0)
+                let names = self.operand_regs(&[from, to]);
+                Value::Regs(self.space_matrix(names[0][0], names[1][0]).0)
             }
             ExprKind::Aggregate(parts) => self.aggregate(parts, &expr.ty),
-            ExprKind::Index(base, index) => self.index(base, index),
-            ExprKind::MatrixElement(matrix, row, column) => {
-                let regs = self.expr_regs(matrix);
-                let (row, column) = (self.reg(row), self.reg(column));
-                let index = self.matrix_index(row, column);
-                single(self.known_or_picked(&regs, index))
-            }
-            ExprKind::Field(base, at) => match self.expr(base) {
-                Value::Struct(mut fields) => fields.swap_remove(*at as usize),
-                other => other,
-            },
+            ExprKind::Index(..) | ExprKind::MatrixElement(..) | ExprKind::Field(..) => self.access(expr),
         }
-    }
-
-    /// Two operands; the first is kept from changes the second makes.
-    pub(super) fn pair(&mut self, a: &Expr, b: &Expr) -> (Vec<Reg>, Vec<Reg>) {
-        let mut left = self.expr_regs(a);
-        if self.assigned.of_expr(self.shader, b).seen() {
-            left = left.into_iter().map(|reg| self.fixed(reg)).collect();
-        }
-        (left, self.expr_regs(b))
     }
 
     fn conversion(&mut self, operand: &Expr, to: &Type) -> Value {
@@ -103,9 +87,9 @@ impl Lower<'_> {
         }
     }
 
-    fn update(&mut self, op: BinaryOp, place: &Place, value: &Expr) -> Value {
-        let right = self.expr_regs(value);
-        let target = self.target(place);
+    fn update(&mut self, op: BinaryOp, place: &Place, value: &Expr, span: Span) -> Value {
+        let (right, target) = self.with_place(value, place, span);
+        let right = self.regs(&right);
         let left = self.load(&target);
         let left = self.regs(&left);
         // An int beside a float is computed as floats and cut again.
@@ -127,8 +111,8 @@ impl Lower<'_> {
         self.stable(&new)
     }
 
-    fn step(&mut self, place: &Place, increment: bool, prefix: bool) -> Value {
-        let target = self.target(place);
+    fn step(&mut self, place: &Place, increment: bool, prefix: bool, span: Span) -> Value {
+        let target = self.target(place, span);
         let old = self.load(&target);
         let old = self.stable(&old);
         let regs = self.regs(&old);
@@ -145,8 +129,11 @@ impl Lower<'_> {
     }
 
     fn closure(&mut self, closure: ClosureId, params: &[Expr], keywords: &[(u32, Expr)], whole: &Expr) -> Reg {
-        let params: Vec<Reg> = params.iter().flat_map(|param| self.expr_regs(param)).collect();
-        let keywords = keywords.iter().map(|(at, value)| (*at, self.expr_regs(value))).collect();
+        let exprs: Vec<&Expr> = params.iter().chain(keywords.iter().map(|keyword| &keyword.1)).collect();
+        let mut regs = self.operand_regs(&exprs);
+        let named = regs.split_off(params.len());
+        let params = regs.concat();
+        let keywords = keywords.iter().map(|keyword| keyword.0).zip(named).collect();
         let dst = self.b.program.reg(Kind::Closure, false);
         self.b.instr(Instr::Leaf { dst, closure, params, keywords, span: self.placed(whole.span) });
         dst
@@ -170,15 +157,62 @@ impl Lower<'_> {
         array
     }
 
-    fn index(&mut self, base: &Expr, index: &Expr) -> Value {
-        let value = self.expr(base);
-        let index = self.reg(index);
-        match (&value, base.ty.base()) {
-            (Value::Array { .. } | Value::Struct(_), _) => self.element(&value, index),
-            (_, Some(Base::Matrix)) => self.matrix_row(&value, index),
-            _ => {
+    /// A field, element or component, with all that is indexed on the way to it.
+    fn access(&mut self, expr: &Expr) -> Value {
+        let (mut way, mut root) = (Vec::new(), expr);
+        let mut exprs = Vec::new();
+        loop {
+            match &root.kind {
+                ExprKind::Index(base, index) => {
+                    exprs.push(&**index);
+                    way.push(root);
+                    root = base;
+                }
+                ExprKind::MatrixElement(base, row, column) => {
+                    exprs.extend([&**column, &**row]);
+                    way.push(root);
+                    root = base;
+                }
+                ExprKind::Field(base, _) => {
+                    way.push(root);
+                    root = base;
+                }
+                _ => break,
+            }
+        }
+        exprs.push(root);
+        exprs.reverse();
+        let mut values = self.operands(&exprs).into_iter();
+        self.at(expr.span);
+        let mut value = values.next().unwrap_or(Value::Regs(Vec::new()));
+        for step in way.into_iter().rev() {
+            value = self.step_into(value, step, &mut values);
+        }
+        value
+    }
+
+    /// One step of an access, by indices that have been computed.
+    fn step_into(&mut self, value: Value, step: &Expr, indices: &mut impl Iterator<Item = Value>) -> Value {
+        match &step.kind {
+            ExprKind::Field(_, at) => value.part(&[*at]).cloned().unwrap_or(value),
+            ExprKind::MatrixElement(..) => {
+                let (row, column) = (self.next_index(indices), self.next_index(indices));
                 let regs = self.regs(&value);
+                let index = self.matrix_index(row, column);
                 Value::Regs(vec![self.known_or_picked(&regs, index)])
+            }
+            _ => {
+                let index = self.next_index(indices);
+                let matrix = |base: &Expr| base.ty.base() == Some(Base::Matrix);
+                match (&value, &step.kind) {
+                    (Value::Array { .. } | Value::Struct(_), _) => self.element(&value, index),
+                    (_, ExprKind::Index(base, _)) if matrix(base) => self.matrix_row(&value, index),
+                    _ => {
+                        let regs = self.regs(&value);
+                        let index = self.clamped(index, regs.len() as u32);
+                        Value::Regs(vec![self.known_or_picked(&regs, index)])
+                    }
+                }
             }
         }
     }
@@ -199,7 +233,7 @@ impl Lower<'_> {
 
     pub(super) fn known_or_picked(&mut self, regs: &[Reg], index: Reg) -> Reg {
         match self.b.known_int(index) {
-            Some(known) => regs[(known.max(0) as usize).min(regs.len() - 1)],
+            Some(known) => regs[known as usize],
             None => self.pick(regs, index),
         }
     }
@@ -222,7 +256,7 @@ impl Lower<'_> {
         let condition = self.fixed(condition);
         let mut effects = self.assigned.of_expr(self.shader, a);
         let other = self.assigned.of_expr(self.shader, b);
-        effects.vars.extend(other.vars.iter().copied());
+        effects.vars.extend(&other.vars);
         let simple = ty.base().is_some();
         if simple && !effects.seen() && !other.seen() && !effects.costly && !other.costly {
             let (a, b) = (self.expr_regs(a), self.expr_regs(b));
@@ -230,7 +264,7 @@ impl Lower<'_> {
         }
         let mut result = self.zero(ty);
         self.make_mutable(&mut result);
-        self.region(effects.vars.into_iter().collect(), |l| {
+        self.region(effects.vars, |l| {
             let mut side = |expr| {
                 l.b.open();
                 let value = l.expr(expr);

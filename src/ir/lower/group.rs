@@ -1,9 +1,9 @@
 //! A shader group: layers in order, their parameters bound, their connections joined.
 
-use super::assigned::Assigned;
+use super::state::{Bound, Frame, Lower};
 use super::value::{Value, kind_of, zero_of};
-use super::{Bound, Builder, Frame, Lower};
 use crate::check::typed::{Shader, ShaderParam, VarId};
+use crate::ir::build::Builder;
 use crate::ir::program::*;
 use crate::lang::globals::Global;
 use crate::lang::path::{Step, part, root, steps};
@@ -11,7 +11,6 @@ use crate::lang::symbols::Symbol;
 use crate::lang::types::{Base, Element, Length, Type};
 use std::collections::HashMap;
 use std::sync::Arc;
-use velour_grammar::Span;
 
 /// What a parameter of a layer gets instead of its default.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,21 +50,8 @@ pub fn lower(layers: &[Layer], options: LowerOptions) -> Program {
     let mut finished: Vec<HashMap<String, (Value, Type)>> = Vec::new();
     let mut outputs = Vec::new();
     for (number, layer) in layers.iter().enumerate() {
-        let mut lower = Lower {
-            b: builder,
-            shader: &layer.shader,
-            vars: vec![None; layer.shader.variables.len()],
-            level: 0,
-            frames: Vec::new(),
-            loops: Vec::new(),
-            exit: None,
-            assigned: Assigned::default(),
-            connected: Vec::new(),
-            stands_for: HashMap::new(),
-            read: read_params(layers, number, options.outputs),
-            layer: number as u32,
-            span: Span::NONE,
-        };
+        let read = read_params(layers, number, options.outputs);
+        let mut lower = Lower::new(builder, &layer.shader, number as u32, read);
         lower.at(layer.shader.span);
         lower.layer(layer, &finished, ci);
         ci = lower.final_ci();
@@ -97,7 +83,7 @@ impl Lower<'_> {
             let scope = self.b.scope();
             self.exit = Some(scope);
             self.frames.push(Frame { scope: Some(scope), result: None });
-            self.region(effects.vars.into_iter().collect(), |l| {
+            self.region(effects.vars, |l| {
                 l.b.open();
                 l.stmts(&l.shader.body);
                 let block = l.b.close();

@@ -1,6 +1,6 @@
 //! Operators on registers, by the types of their operands.
 
-use super::Lower;
+use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::Expr;
 use crate::ir::op::{Binary, Compare, IntBinary, IntUnary, Routine, Smooth, Unary};
@@ -9,6 +9,39 @@ use crate::lang::types::{Base, Type};
 use velour_grammar::ast::{BinaryOp, UnaryOp};
 
 impl Lower<'_> {
+    /// Converts the registers of a single value from one base type to another.
+    pub(super) fn convert(&mut self, regs: &[Reg], from: Base, to: Base) -> Vec<Reg> {
+        match (from, to) {
+            _ if from == to || (from.is_triple() && to.is_triple()) => regs.to_vec(),
+            (Base::Int, Base::Float) => vec![self.b.int_to_float(regs[0])],
+            (Base::Float, Base::Int) => vec![self.b.float_to_int(regs[0])],
+            (_, Base::Closure) if from != Base::Closure => vec![self.b.constant(Const::NoClosure)],
+            (Base::Int, _) => {
+                let float = self.b.int_to_float(regs[0]);
+                self.convert(&[float], Base::Float, to)
+            }
+            (Base::Float, Base::Matrix) => {
+                let zero = self.b.float(0.0);
+                (0..16).map(|i| if i % 5 == 0 { regs[0] } else { zero }).collect()
+            }
+            (Base::Float, _) if to.is_triple() => vec![regs[0]; 3],
+            _ => regs.to_vec(),
+        }
+    }
+
+    /// Sum of products of two lists of floats, from the left.
+    pub(super) fn dot(&mut self, a: &[Reg], b: &[Reg]) -> Reg {
+        let mut products = Vec::new();
+        for (&x, &y) in a.iter().zip(b) {
+            products.push(self.b.binary(Binary::Mul, x, y));
+        }
+        let mut sum = products[0];
+        for &product in &products[1..] {
+            sum = self.b.binary(Binary::Add, sum, product);
+        }
+        sum
+    }
+
     pub(super) fn unary(&mut self, op: UnaryOp, operand: &Expr) -> Vec<Reg> {
         let regs = self.expr_regs(operand);
         let base = operand.ty.base().unwrap_or(Base::Void);
@@ -157,7 +190,7 @@ impl Lower<'_> {
         let start = self.b.int_binary(IntBinary::Ne, left, zero);
         let result = self.b.copy(start, true);
         let test = if and { start } else { self.b.int_unary(IntUnary::Not, start) };
-        self.region(effects.vars.into_iter().collect(), |l| {
+        self.region(effects.vars, |l| {
             l.b.open();
             let right = l.reg(b);
             let right = l.b.int_binary(IntBinary::Ne, right, zero);

@@ -1,21 +1,19 @@
 //! Places: finding, reading and writing the part of a variable that an assignment names.
 
+use super::state::{Bound, Lower, Name};
 use super::value::Value;
-use super::{Bound, Lower};
-use crate::check::typed::{Access, Place, VarId};
+use crate::check::typed::{Access, Expr, Place, VarId};
 use crate::ir::op::IntBinary;
-use crate::ir::program::{Instr, Reg};
+use crate::ir::program::Reg;
+use velour_grammar::Span;
 
 /// A place with its indices computed.
-pub struct Target {
-    var: VarId,
-    /// Fields from the variable down to the value, as long as no array has been indexed.
-    fields: Vec<u32>,
-    /// True once an array has been indexed: from there on the value is part of an array, not of a binding.
-    indexed: bool,
-    /// The value the way leads to.
-    value: Value,
-    /// A component of it.
+pub(super) struct Target {
+    /// The variable, and the fields from there down to the value, as long as no array has been indexed.
+    name: Name,
+    /// The element of an array that the way leads to; what is no element is looked up by its name.
+    element: Option<Value>,
+    /// A component of the value.
     component: Option<Component>,
 }
 
@@ -25,79 +23,123 @@ enum Component {
     Computed(Reg),
 }
 
+/// The index expressions on the way to a place, in order.
+pub(super) fn indices(place: &Place) -> Vec<&Expr> {
+    let of = |access| match access {
+        &Access::Field(_) => [None, None],
+        Access::Element(index) | Access::Component(index) => [Some(index), None],
+        Access::Matrix(row, column) => [Some(row), Some(column)],
+    };
+    place.path.iter().flat_map(of).flatten().collect()
+}
+
 impl Lower<'_> {
     /// Walks to a place. Index expressions are evaluated once, here.
-    pub(super) fn target(&mut self, place: &Place) -> Target {
-        let value = self.variable(place.var);
-        let mut target = Target { var: place.var, fields: Vec::new(), indexed: false, value, component: None };
+    pub(super) fn target(&mut self, place: &Place, span: Span) -> Target {
+        let mut values = self.operands(&indices(place)).into_iter();
+        self.at(span);
+        self.target_at(place, &mut values)
+    }
+
+    /// Walks to a place by indices that have been computed.
+    pub(super) fn target_at(&mut self, place: &Place, indices: &mut impl Iterator<Item = Value>) -> Target {
+        let mut target = Target { name: self.resolve(place.var), element: None, component: None };
         for access in &place.path {
             match access {
-                Access::Field(at) => {
-                    if let Value::Struct(fields) = &target.value {
-                        target.value = fields[*at as usize].clone();
-                    }
-                    if !target.indexed {
-                        target.fields.push(*at);
-                    }
+                Access::Field(at) => match &mut target.element {
+                    None => target.name.fields.push(*at),
+                    Some(element) => *element = element.part(&[*at]).unwrap_or(element).clone(),
+                },
+                Access::Element(_) => {
+                    let index = self.next_index(indices);
+                    let whole = self.whole(&target);
+                    target.element = Some(self.element(&whole, index));
                 }
-                Access::Element(index) => {
-                    let index = self.reg(index);
-                    let index = self.fixed(index);
-                    target.value = self.element(&target.value, index);
-                    target.indexed = true;
+                Access::Component(_) => {
+                    let index = self.next_index(indices);
+                    let index = self.clamped(index, 3);
+                    target.component = Some(self.component(index));
                 }
-                Access::Component(index) => {
-                    let index = self.reg(index);
-                    target.component = Some(self.component(index, 3));
-                }
-                Access::Matrix(row, column) => {
-                    let (row, column) = (self.reg(row), self.reg(column));
+                Access::Matrix(..) => {
+                    let (row, column) = (self.next_index(indices), self.next_index(indices));
                     let index = self.matrix_index(row, column);
-                    target.component = Some(self.component(index, 16));
+                    target.component = Some(self.component(index));
                 }
             }
         }
         target
     }
 
+    pub(super) fn next_index(&mut self, indices: &mut impl Iterator<Item = Value>) -> Reg {
+        let value = indices.next().unwrap_or(Value::Regs(Vec::new()));
+        match self.regs(&value).first() {
+            Some(&reg) => self.fixed(reg),
+            None => self.b.int(0),
+        }
+    }
+
+    /// An index kept inside `0..len`; one that is outside is reported when it is used.
+    pub(super) fn clamped(&mut self, index: Reg, len: u32) -> Reg {
+        match self.b.known_int(index) {
+            Some(known) if (0..len as i32).contains(&known) => index,
+            _ => self.b.clamped(index, len, self.span),
+        }
+    }
+
     /// `4 row + column`
     pub(super) fn matrix_index(&mut self, row: Reg, column: Reg) -> Reg {
+        let (row, column) = (self.clamped(row, 4), self.clamped(column, 4));
         let four = self.b.int(4);
         let row = self.b.int_binary(IntBinary::Mul, row, four);
         self.b.int_binary(IntBinary::Add, row, column)
     }
 
-    fn component(&mut self, index: Reg, count: usize) -> Component {
+    fn component(&mut self, index: Reg) -> Component {
         match self.b.known_int(index) {
-            Some(known) => Component::Known((known.max(0) as usize).min(count - 1)),
-            None => Component::Computed(self.fixed(index)),
+            Some(known) => Component::Known(known as usize),
+            None => Component::Computed(index),
         }
     }
 
     /// The value of a variable; one that is read before it is set is zero.
     pub(super) fn variable(&mut self, var: VarId) -> Value {
-        if let Some(bound) = &self.vars[var.0 as usize] {
-            return bound.value.clone();
+        let name = self.resolve(var);
+        self.named(&name)
+    }
+
+    /// The value that a name stands for at this moment.
+    pub(super) fn named(&mut self, name: &Name) -> Value {
+        if self.vars[name.var.0 as usize].is_none() {
+            let variable = &self.shader.variables[name.var.0 as usize];
+            let value = match variable.global {
+                Some(global) => self.global(global),
+                None => {
+                    let ty = variable.ty.clone();
+                    self.zero(&ty)
+                }
+            };
+            // An unset variable is the same zero everywhere, so it may be bound as if at the outermost level.
+            self.vars[name.var.0 as usize] = Some(Bound { value, level: 0 });
         }
-        let variable = &self.shader.variables[var.0 as usize];
-        let value = match variable.global {
-            Some(global) => self.global(global),
-            None => {
-                let ty = variable.ty.clone();
-                self.zero(&ty)
-            }
-        };
-        // An unset variable is the same zero everywhere, so it may be bound as if at the outermost level.
-        self.vars[var.0 as usize] = Some(Bound { value: value.clone(), level: 0 });
-        value
+        let bound = self.vars[name.var.0 as usize].as_ref();
+        bound.and_then(|bound| bound.value.part(&name.fields)).cloned().unwrap_or(Value::Regs(Vec::new()))
+    }
+
+    /// The value that a target is, or is a component of.
+    fn whole(&mut self, target: &Target) -> Value {
+        match &target.element {
+            Some(element) => element.clone(),
+            None => self.named(&target.name),
+        }
     }
 
     /// Reads a target.
     pub(super) fn load(&mut self, target: &Target) -> Value {
-        if matches!(target.value, Value::Array { .. } | Value::Struct(_)) {
-            return target.value.clone();
+        let whole = self.whole(target);
+        if matches!(whole, Value::Array { .. } | Value::Struct(_)) {
+            return whole;
         }
-        let regs = self.regs(&target.value);
+        let regs = self.regs(&whole);
         match &target.component {
             None => Value::Regs(regs),
             Some(Component::Known(at)) => Value::Regs(vec![regs[*at]]),
@@ -110,7 +152,6 @@ impl Lower<'_> {
         let mut chosen = regs[0];
         for (i, &reg) in regs.iter().enumerate().skip(1) {
             let number = self.b.int(i as i32);
-            // The last component also stands for indices beyond it.
             let same = self.b.int_binary(IntBinary::Ge, index, number);
             chosen = self.b.select(same, reg, chosen);
         }
@@ -123,7 +164,8 @@ impl Lower<'_> {
             return self.write_whole(target, value);
         };
         let source = self.regs(value);
-        let old = self.regs(&target.value);
+        let whole = self.whole(target);
+        let old = self.regs(&whole);
         let mut new = old.clone();
         match component {
             Component::Known(at) => new[*at] = source[0],
@@ -139,24 +181,19 @@ impl Lower<'_> {
     }
 
     fn write_whole(&mut self, target: &Target, value: &Value) {
-        if let Value::Item { id, index } = &target.value {
-            let regs = self.regs(value);
-            return self.store_item(*id, *index, &regs);
+        if let Some(element) = &target.element {
+            return self.store(element, value);
         }
-        let rebind = self.vars[target.var.0 as usize].as_ref().is_some_and(|bound| bound.level == self.level);
-        if !rebind || target.indexed {
-            return self.store(&target.value, value);
+        let old = self.named(&target.name);
+        let at = target.name.var.0 as usize;
+        if self.vars[at].as_ref().is_none_or(|bound| bound.level != self.level) {
+            return self.store(&old, value);
         }
-        let ready = self.rebound(&target.value, value);
-        if let Some(bound) = &mut self.vars[target.var.0 as usize] {
-            let mut slot = &mut bound.value;
-            for &field in &target.fields {
-                match slot {
-                    Value::Struct(fields) => slot = &mut fields[field as usize],
-                    _ => return,
-                }
-            }
-            *slot = ready;
+        let new = self.rebound(&old, value);
+        if let Some(bound) = &mut self.vars[at]
+            && let Some(slot) = bound.value.part_mut(&target.name.fields)
+        {
+            *slot = new;
         }
     }
 
@@ -176,29 +213,6 @@ impl Lower<'_> {
                 old.clone()
             }
             _ => self.stable(new),
-        }
-    }
-
-    /// Moves a value into mutable registers and arrays, in the active lanes.
-    pub(super) fn store(&mut self, to: &Value, from: &Value) {
-        match (to, from) {
-            (Value::Struct(a), Value::Struct(b)) => a.iter().zip(b).for_each(|(a, b)| self.store(a, b)),
-            (Value::Array { .. }, _) => self.copy_elements(to, from),
-            (Value::Item { id, index }, _) => {
-                let regs = self.regs(from);
-                self.store_item(*id, *index, &regs);
-            }
-            (Value::Regs(to), _) => {
-                let from = self.regs(from);
-                // All are read before the first is written: `c = color(c.z, c.x, c.y)` permutes.
-                let steady: Vec<Reg> = from.into_iter().map(|reg| self.fixed(reg)).collect();
-                for (&dst, src) in to.iter().zip(steady) {
-                    if dst != src {
-                        self.b.instr(Instr::Move { dst, src, masked: true });
-                    }
-                }
-            }
-            _ => {}
         }
     }
 }

@@ -1,12 +1,9 @@
-//! Statements and calls of user functions.
+//! Statements.
 
 use super::assigned::Effects;
-use super::builtin::root_variable;
-use super::value::Value;
-use super::{Frame, Lower};
+use super::state::Lower;
 use crate::check::typed::*;
-use crate::ir::program::{Node, Reg};
-use crate::lang::types::Type;
+use crate::ir::program::Node;
 use velour_grammar::Span;
 
 impl Lower<'_> {
@@ -69,7 +66,7 @@ impl Lower<'_> {
         let mut effects = Effects::default();
         self.effects(then, &mut effects);
         self.effects(otherwise, &mut effects);
-        self.region(effects.vars.into_iter().collect(), |l| {
+        self.region(effects.vars, |l| {
             l.b.open();
             l.stmts(then);
             let then = l.b.close();
@@ -78,12 +75,6 @@ impl Lower<'_> {
             let otherwise = l.b.close();
             l.b.push(Node::If(condition, then, otherwise));
         });
-    }
-
-    /// A register that the code under it cannot change.
-    pub(super) fn fixed(&mut self, reg: Reg) -> Reg {
-        let mutable = self.b.program.regs[reg.0 as usize].mutable;
-        if mutable { self.b.copy(reg, false) } else { reg }
     }
 
     fn loop_stmt(&mut self, tested: (Option<&Expr>, bool), step: Option<&Expr>, body: &[Stmt], span: Span) {
@@ -95,7 +86,7 @@ impl Lower<'_> {
         }
         let span = self.placed(span);
         let (leave, next) = (self.b.scope(), self.b.scope());
-        self.region(effects.vars.into_iter().collect(), |l| {
+        self.region(effects.vars, |l| {
             l.loops.push((leave, next));
             l.b.open();
             l.b.open();
@@ -141,86 +132,5 @@ impl Lower<'_> {
         if let Some(scope) = scope {
             self.b.push(Node::Leave(scope));
         }
-    }
-
-    /// Expands a call of a user function in place.
-    pub(super) fn call(&mut self, id: FunctionId, args: &[Argument]) -> Value {
-        let function = self.shader.functions[id.0 as usize].clone();
-        let mut outputs = Vec::new();
-        let mut values = Vec::new();
-        for (arg, &(var, _)) in args.iter().zip(&function.params) {
-            let root = match arg {
-                Argument::In(expr) => root_variable(expr),
-                Argument::Out(place) => Some(place.var),
-            };
-            if let Some(root) = root {
-                let origin = self.origin(root);
-                self.stands_for.insert(var, origin);
-            }
-            let value = match arg {
-                Argument::In(expr) => self.expr(expr),
-                Argument::Out(place) => {
-                    let target = self.target(place);
-                    let value = self.load(&target);
-                    // An array is handed over as it is, so nothing has to come back.
-                    if !matches!(value, Value::Array { .. }) {
-                        outputs.push((target, var));
-                    }
-                    value
-                }
-            };
-            values.push(self.stable(&value));
-        }
-        for (value, &(var, _)) in values.into_iter().zip(&function.params) {
-            self.bind(var, value);
-        }
-        let result = self.body(&function.body, &function.returns);
-        for (target, var) in outputs {
-            if let Some(bound) = self.vars[var.0 as usize].clone() {
-                let value = self.stable(&bound.value);
-                self.write(&target, &value);
-            }
-        }
-        // What the function declared is gone; left bound, a later region would keep the registers of this call alive.
-        for var in self.assigned.of_function(self.shader, id).declared {
-            self.vars[var.0 as usize] = None;
-        }
-        result
-    }
-
-    /// The statements of a function, and the value it returns.
-    fn body(&mut self, body: &[Stmt], returns: &Type) -> Value {
-        let effects = self.assigned.of_stmts(self.shader, body);
-        let before_last = &body[..body.len().saturating_sub(1)];
-        let early = self.assigned.of_stmts(self.shader, before_last).returns;
-        let loops = std::mem::take(&mut self.loops);
-        let result = match body.last() {
-            Some(Stmt::Return(value)) if !early => {
-                self.frames.push(Frame { scope: None, result: None });
-                self.stmts(before_last);
-                value.as_ref().map(|value| self.expr(value)).unwrap_or(Value::Regs(Vec::new()))
-            }
-            _ if !effects.returns => {
-                self.frames.push(Frame { scope: None, result: None });
-                self.stmts(body);
-                self.zero(returns)
-            }
-            _ => {
-                let scope = self.b.scope();
-                let mut result = self.zero(returns);
-                self.make_mutable(&mut result);
-                self.frames.push(Frame { scope: Some(scope), result: Some(result.clone()) });
-                self.region(effects.vars.into_iter().collect(), |l| {
-                    l.b.open();
-                    l.stmts(body);
-                    let block = l.b.close();
-                    l.b.push(Node::Scope(scope, block));
-                });
-                result
-            }
-        };
-        self.frames.pop();
-        self.loops = loops;
-        self.stable(&result)
     }
 }

@@ -1,6 +1,6 @@
 //! Calls that make or write text.
 
-use super::Lower;
+use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::{Argument, Expr, ExprKind};
 use crate::ir::op::{PrintTo, Routine, TextArg, TextFormat};
@@ -10,34 +10,26 @@ use velour_grammar::Span;
 impl Lower<'_> {
     /// `printf`, `fprintf`, `error`, `warning` and `format`.
     pub(super) fn text_call(&mut self, name: &str, args: &[Argument], span: Span) -> Value {
-        let mut src = Vec::new();
-        let mut list = args;
-        if name == "fprintf" {
-            if let Argument::In(file) = &args[0] {
-                src.push(self.reg(file));
-            }
-            list = &args[1..];
-        }
-        let text = match &list[0] {
-            Argument::In(Expr { kind: ExprKind::String(text), .. }) => text.clone(),
+        let exprs: Vec<&Expr> = args.iter().filter_map(Argument::read).collect();
+        let (file, list) = exprs.split_at((name == "fprintf") as usize);
+        let text = match list.first().map(|expr| &expr.kind) {
+            Some(ExprKind::String(text)) => text.clone(),
             _ => String::new(),
         };
+        let values = self.operands(&exprs);
+        let (file, values) = values.split_at(file.len());
+        let mut src: Vec<Reg> = file.iter().flat_map(|value| self.regs(value)).collect();
         let mut format = TextFormat { text, args: Vec::new() };
-        for arg in &list[1..] {
-            if let Argument::In(expr) = arg {
-                let value = self.expr(expr);
-                let mut regs = Vec::new();
-                self.flat(&value, &mut regs);
-                let steady: Vec<Reg> = regs.into_iter().map(|reg| self.fixed(reg)).collect();
-                let count = steady.len() as u32;
-                format.args.push(match steady.first().map(|&reg| self.b.program.kind(reg)) {
-                    Some(Kind::Float) => TextArg::Floats(count),
-                    Some(Kind::String) => TextArg::Strings(count),
-                    Some(Kind::Closure) => TextArg::Closure,
-                    _ => TextArg::Ints(count),
-                });
-                src.extend(steady);
-            }
+        for value in values.iter().skip(1) {
+            let before = src.len();
+            self.flat(value, &mut src);
+            let count = (src.len() - before) as u32;
+            format.args.push(match src.get(before).map(|&reg| self.b.program.kind(reg)) {
+                Some(Kind::Float) => TextArg::Floats(count),
+                Some(Kind::String) => TextArg::Strings(count),
+                Some(Kind::Closure) => TextArg::Closure,
+                Some(Kind::Int) | None => TextArg::Ints(count),
+            });
         }
         self.at(span);
         let span = self.span;

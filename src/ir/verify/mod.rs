@@ -39,6 +39,17 @@ pub fn verify(program: &Program, table: &ClosureTable) -> Result<(), VerifyError
     walk.results()
 }
 
+/// Panics in debug builds when a pass of the compiler broke a promise, so that the mistake is found where it was made. A program that
+/// is only too large is no mistake; making a group of it is an error.
+pub fn debug_verify(program: &Program, table: &ClosureTable) {
+    if cfg!(debug_assertions)
+        && let Err(error) = verify(program, table)
+        && !matches!(error.problem, Problem::TooDeep(_) | Problem::TooLarge(_))
+    {
+        panic!("the compiler broke a promise: {error}");
+    }
+}
+
 /// Scopes beyond this number are none: memory is set aside for each.
 const MAX_SCOPES: u32 = 1 << 20;
 

@@ -1,0 +1,117 @@
+//! What all shaders of a session share, and the way from text to a shader.
+
+use super::error::CompileError;
+use super::shader::Shader;
+use crate::check::check;
+use crate::lang::closures::ClosureTable;
+use std::path::Path;
+use std::sync::Arc;
+use velour_grammar::{Diagnostics, Options, Sources, parse, parse_bytes};
+
+/// The standard header, kept in the binary so that nothing has to be installed.
+pub const STDOSL: &str = include_str!("../../shaders/stdosl.osl");
+
+/// The name under which messages speak of the built-in header.
+const STDOSL_NAME: &str = "stdosl.osl";
+
+/// What all shaders of a session share.
+#[derive(Clone, Debug)]
+pub struct Compiler {
+    /// Include folders, macros, files in memory, and the standard header as prelude.
+    pub options: Options,
+    /// The closures that shaders may call.
+    pub closures: Arc<ClosureTable>,
+}
+
+/// What checking a text gives.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// The shader, when there is no error.
+    pub shader: Option<Shader>,
+    /// All messages.
+    pub diagnostics: Diagnostics,
+    /// The text they refer to.
+    pub sources: Sources,
+}
+
+impl Default for Compiler {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Compiler {
+    /// A compiler with the built-in header and the standard closures.
+    pub fn new() -> Self {
+        let options = Options {
+            // The header is always read first, so including it again adds nothing.
+            virtual_files: vec![("stdosl.h".to_owned(), String::new()), (STDOSL_NAME.to_owned(), String::new())],
+            prelude: Some((STDOSL_NAME.to_owned(), STDOSL.to_owned())),
+            ..Options::default()
+        };
+        Compiler { options, closures: Arc::new(ClosureTable::standard()) }
+    }
+
+    /// Uses another standard header.
+    pub fn with_header(mut self, name: &str, text: &str) -> Self {
+        self.options.prelude = Some((name.to_owned(), text.to_owned()));
+        self
+    }
+
+    /// Parses and checks a text and gives everything there is to say about it.
+    pub fn check(&self, name: &str, text: &str) -> Checked {
+        self.finish(parse(name, text, &self.options))
+    }
+
+    /// The same for the bytes of a file, which may be anything.
+    pub fn check_bytes(&self, name: &str, bytes: &[u8]) -> Checked {
+        self.finish(parse_bytes(name, bytes, &self.options))
+    }
+
+    fn finish(&self, parsed: velour_grammar::Parsed) -> Checked {
+        let mut diagnostics = parsed.diagnostics;
+        let mut shader = None;
+        // After a syntax error the tree lacks pieces, and messages about what is missing would only distract.
+        if !diagnostics.has_errors() {
+            let (typed, more) = check(&parsed.file, &self.closures);
+            diagnostics.append(more);
+            shader = typed.map(|typed| Shader {
+                typed: Arc::new(typed),
+                sources: parsed.sources.clone(),
+                closures: self.closures.clone(),
+            });
+        }
+        Checked { shader, diagnostics, sources: parsed.sources }
+    }
+
+    /// Compiles a text to a shader.
+    ///
+    /// # Errors
+    /// All messages, when one of them is an error.
+    pub fn compile(&self, name: &str, text: &str) -> Result<Shader, CompileError> {
+        Self::require(self.check(name, text))
+    }
+
+    /// Compiles a file to a shader.
+    ///
+    /// # Errors
+    /// The file cannot be read, or its text is wrong.
+    pub fn compile_file(&self, path: &Path) -> Result<Shader, CompileError> {
+        let name = path.display().to_string();
+        let bytes = std::fs::read(path).map_err(|error| CompileError::File { name: name.clone(), error })?;
+        Self::require(self.check_bytes(&name, &bytes))
+    }
+
+    fn require(checked: Checked) -> Result<Shader, CompileError> {
+        let Checked { shader, diagnostics, sources } = checked;
+        shader.ok_or(CompileError::Text { diagnostics, sources })
+    }
+}
+
+/// Compiles a text with the built-in header and the standard closures.
+///
+/// # Errors
+/// All messages, when one of them is an error.
+pub fn compile(text: &str) -> Result<Shader, CompileError> {
+    Compiler::new().compile("shader", text)
+}
