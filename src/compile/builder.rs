@@ -99,7 +99,7 @@ impl GroupBuilder {
     fn try_connect(&mut self, from: (&str, &str), to: (&str, &str)) -> Result<(), GroupError> {
         let at = |name: &str| self.layers.iter().position(|layer| layer.name == name);
         let missing = |name: &str| GroupError {
-            problem: GroupProblem::NoLayer { layer: name.to_owned() },
+            problem: Box::new(GroupProblem::NoLayer { layer: name.to_owned() }),
             help: "declare the shader of a layer before connecting it".to_owned(),
             subject: GroupSubject::Layer(name.to_owned()),
         };
@@ -107,7 +107,7 @@ impl GroupBuilder {
         let target = at(to.0).ok_or_else(|| missing(to.0))?;
         if source >= target {
             return Err(GroupError {
-                problem: GroupProblem::LayerOrder { source: from.0.to_owned(), target: to.0.to_owned() },
+                problem: Box::new(GroupProblem::LayerOrder { source: from.0.to_owned(), target: to.0.to_owned() }),
                 help: "declare the layer that is read first".to_owned(),
                 subject: GroupSubject::Layer(from.0.to_owned()),
             });

@@ -25,7 +25,7 @@ const UNSAFE: &[&str] = &["render/accel/prefetch.rs", "math/instruction_set.rs"]
 const SPEAKERS: &[&str] = &["main.rs"];
 
 /// All folders of Rust, tests and benches included.
-const FOLDERS: [&str; 5] = ["src", "grammar/src", "tests", "grammar/tests", "benches"];
+const FOLDERS: [&str; 6] = ["src", "grammar/src", "tests", "grammar/tests", "benches", "examples"];
 
 /// Circles of files that stand today, each a room's: a list that only gets shorter.
 const CIRCLES: &[&[&str]] = &[
