@@ -146,7 +146,7 @@ impl GroupBuilder {
         let last = self.layers.last().map_or(String::new(), |layer| layer.name.clone());
         let names = self.layers.iter().map(|layer| (layer.shader.name.clone(), layer.name.clone())).collect();
         Group::new(program, self.closures, locator(self.sources, names)).map_err(|error| GroupError {
-            problem: GroupProblem::CannotRun { error },
+            problem: Box::new(GroupProblem::CannotRun { error }),
             help: "this is a limit of the machine, or a mistake of the compiler that should be reported".to_owned(),
             subject: GroupSubject::Layer(last),
         })

@@ -33,7 +33,10 @@ impl Run<'_> {
 
     /// The parameter of a kind that starts at the front of `regs`, which it takes off.
     fn param(&mut self, kind: ParamKind, regs: &mut &[Reg]) -> Param {
-        let width = if matches!(kind, ParamKind::Color | ParamKind::Vector | ParamKind::Normal) { 3 } else { 1 };
+        let width = match kind {
+            ParamKind::Color | ParamKind::Vector | ParamKind::Normal => 3,
+            ParamKind::Float | ParamKind::Int | ParamKind::String | ParamKind::Closure => 1,
+        };
         let (own, rest) = regs.split_at(width);
         *regs = rest;
         match kind {
@@ -41,7 +44,9 @@ impl Run<'_> {
             ParamKind::Int => Param::Int(self.ints(own[0])),
             ParamKind::String => Param::String(self.ints(own[0])),
             ParamKind::Closure => Param::Closure(self.closure(own[0])),
-            _ => Param::Triple([self.floats(own[0]), self.floats(own[1]), self.floats(own[2])]),
+            ParamKind::Color | ParamKind::Vector | ParamKind::Normal => {
+                Param::Triple([self.floats(own[0]), self.floats(own[1]), self.floats(own[2])])
+            }
         }
     }
 

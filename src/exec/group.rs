@@ -66,7 +66,7 @@ impl Group {
         }
         let inputs = program.regs.iter().enumerate().filter_map(|(i, info)| match info.source {
             Source::Input(input) if read[i] > 0 => Some((Reg(i as u32), input)),
-            _ => None,
+            Source::Input(_) | Source::Const(_) | Source::Code => None,
         });
         let inputs = Arc::new(inputs.collect());
         let mut spent = vec![false; program.regs.len()];

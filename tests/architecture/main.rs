@@ -83,13 +83,15 @@ const GROWING: &[&str] = &[
     "ParamKind",
     "ParamType",
     "Promise",
-    "Report",
+    "ReportKind",
     "Routine",
     "Shadowing",
     "Shape",
     "SheenAlbedo",
     "SheenSampling",
     "Sky",
+    "Slopes",
+    "Smooth",
     "Stmt",
     "Unary",
     "Usage",
@@ -98,19 +100,8 @@ const GROWING: &[&str] = &[
 /// Matches of growing enums that are open today, a count a file: a list that only gets shorter.
 const OPEN: &[(&str, &str, usize)] = &[
     ("bsdf/sheen/fits.rs", "Shadowing", 1),
-    ("exec/closures.rs", "ParamKind", 1),
-    ("exec/points.rs", "Global", 1),
-    ("exec/routines.rs", "Attribute", 1),
-    ("exec/routines.rs", "Routine", 3),
-    ("ir/verify.rs", "Instr", 1),
     ("math/instruction_set.rs", "InstructionSet", 1),
     ("measure/verify/closure.rs", "ParamKind", 3),
-    ("optimize/derive/mod.rs", "Binary", 1),
-    ("optimize/derive/mod.rs", "Global", 1),
-    ("optimize/derive/mod.rs", "Instr", 2),
-    ("optimize/derive/mod.rs", "Routine", 1),
-    ("optimize/derive/rules.rs", "Binary", 2),
-    ("optimize/derive/rules.rs", "Unary", 1),
 ];
 
 /// The room of a file of `src`.

@@ -195,16 +195,26 @@ impl Writer<'_> {
         }
         let info = self.program.regs[reg.0 as usize];
         let slope = match info.source {
-            Source::Input(Input::Global(global @ (Global::P | Global::Ps | Global::I | Global::U | Global::V), c)) => {
-                [Some(self.input(Input::GlobalDx(global, c))), Some(self.input(Input::GlobalDy(global, c)))]
-            }
+            Source::Input(input) => self.input_slope(input),
             Source::Code if info.mutable && info.kind == Kind::Float => {
                 [Some(self.program.reg(Kind::Float, true)), Some(self.program.reg(Kind::Float, true))]
             }
-            _ => [None, None],
+            Source::Code | Source::Const(_) => [None, None],
         };
         self.slopes.insert(reg, slope);
         slope
+    }
+
+    /// The derivatives of an input: points have them for what moves along the surface.
+    fn input_slope(&mut self, input: Input) -> Slope {
+        let Input::Global(global, c) = input else { return [None, None] };
+        match global {
+            Global::P | Global::Ps | Global::I | Global::U | Global::V => {
+                [Some(self.input(Input::GlobalDx(global, c))), Some(self.input(Input::GlobalDy(global, c)))]
+            }
+            Global::N | Global::Ng | Global::DPdu | Global::DPdv => [None, None],
+            Global::Time | Global::Dtime | Global::DPdtime | Global::Ci => [None, None],
+        }
     }
 
     fn un(&mut self, op: Unary, a: Reg) -> Reg {
@@ -272,7 +282,22 @@ impl Writer<'_> {
                 self.slopes.insert(dst, slope);
             }
             Instr::Move { dst, src, .. } => self.move_slope(instr, dst, src),
-            Instr::ArrayGet { .. } | Instr::ArraySet { .. } => self.array_slope(instr),
+            Instr::ArrayGet { dst, array, component, index, span } => {
+                self.emit(instr);
+                let slope = self.twins(array).map(|array| {
+                    let dst = self.program.reg(Kind::Float, false);
+                    self.emit(Instr::ArrayGet { dst, array, component, index, span });
+                    Some(dst)
+                });
+                self.slopes.insert(dst, slope);
+            }
+            Instr::ArraySet { array, component, index, src, masked, span } => {
+                self.emit(instr);
+                for (array, slope) in self.twins(array).into_iter().zip(self.slope(src)) {
+                    let src = slope.unwrap_or_else(|| self.zero());
+                    self.emit(Instr::ArraySet { array, component, index, src, masked, span });
+                }
+            }
             Instr::Call { routine, dst, src, span } => self.call_slope(routine, dst, src, span),
             // What has no slope is never asked for one; see `Needs::instr`.
             Instr::Derivative(..) | Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => self.emit(instr),
@@ -334,34 +359,15 @@ impl Writer<'_> {
         out
     }
 
-    fn array_slope(&mut self, instr: Instr) {
-        let (Instr::ArrayGet { array, .. } | Instr::ArraySet { array, .. }) = instr else { return };
+    /// The arrays that hold the derivatives of an array's elements.
+    fn twins(&mut self, array: ArrayId) -> [ArrayId; 2] {
         let info = self.program.arrays[array.0 as usize];
         let program = &mut *self.program;
-        let twins = *self.arrays.entry(array).or_insert_with(|| {
+        *self.arrays.entry(array).or_insert_with(|| {
             [0, 1].map(|_| {
                 program.arrays.push(info);
                 ArrayId(program.arrays.len() as u32 - 1)
             })
-        });
-        self.emit(instr.clone());
-        match instr {
-            Instr::ArrayGet { dst, component, index, span, .. } => {
-                let slope = twins.map(|array| {
-                    let dst = self.program.reg(Kind::Float, false);
-                    self.emit(Instr::ArrayGet { dst, array, component, index, span });
-                    Some(dst)
-                });
-                self.slopes.insert(dst, slope);
-            }
-            Instr::ArraySet { component, index, src, masked, span, .. } => {
-                let from = self.slope(src);
-                for (array, slope) in twins.into_iter().zip(from) {
-                    let src = slope.unwrap_or_else(|| self.zero());
-                    self.emit(Instr::ArraySet { array, component, index, src, masked, span });
-                }
-            }
-            _ => {}
-        }
+        })
     }
 }
