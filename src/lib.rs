@@ -19,13 +19,13 @@
 //! outputs by name, as far as the group keeps them.
 //!
 //! ```
-//! use velour::closure::reading::Argument;
+//! use velour::closure::reading::Value;
 //! use velour::exec::{Machine, Points, Values};
 //!
 //! let shader = velour::compile::compile("surface s(output float f = 0) { f = 1 - u; Ci = f * sheen(diffuse(N), N, color(1), .5); }")?;
 //! let (group, mut machine) = (shader.group().keep_outputs().build()?, Machine::new());
 //! let leaf = machine.shade(&group, &Points::single(glam::Vec3::Z)).lane(group.table(), 0).next().unwrap();
-//! assert_eq!((leaf.name(), leaf.weight(), leaf.get("roughness")), ("sheen", [1.0; 3], Some(Argument::Float(0.5))));
+//! assert_eq!((leaf.name(), leaf.weight(), leaf.get("roughness")), ("sheen", [1.0; 3], Some(Value::Float(0.5))));
 //! assert_eq!(machine.output(&group, "f").unwrap().lane(0), Values::Floats(vec![1.0]));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -58,7 +58,7 @@
 //! | [`ir`] | typed shaders to a program; print; verify |
 //! | [`optimize`] | program to program: derivatives, dead code, uniform values, operations in pairs |
 //! | [`bsdf`] | one file a scattering model, in its local frame |
-//! | [`closure`] | the tree: print, flatten to lobes, albedo scaling, evaluate, sample |
+//! | [`closure`] | what each closure is, one file a family; the tree: print, flatten to lobes, albedo scaling, evaluate, sample |
 //! | [`exec`] | program and points to closure tree |
 //! | [`compile`] | the pipeline in one place |
 //! | [`scene`] | scene XML, meshes, shader groups |
@@ -72,7 +72,8 @@
 //! - Past [`check`] a shader cannot fail. What can go wrong at run time is data, reported as [`exec::Report`].
 //! - A verified program cannot fail: [`ir::verify`] says what that means.
 //! - No width of a batch, no thread count and no instruction set changes a bit of a result.
-//! - A closure is declared once, in [`lang::closures`]; all else reads that table.
+//! - A closure is one [`closure::ClosureDef`]: name, arguments, documentation, promises and lobes. All else reads that, for
+//!   those of hosts as well.
 //!
 //! Decision (2026-11-22): `bsdf` and `closure` stand above `exec`, because the machine fills the tree that `closure`
 //! owns, and `closure` evaluates models of `bsdf`, instead of `exec` owning a tree that others read.

@@ -1,6 +1,6 @@
 //! Nothing stays in a machine: neither the registers of dropped groups nor the strings of past batches.
 
-use velour::closure::reading::Argument;
+use velour::closure::reading::Value;
 use velour::compile::{Compiler, Shader};
 use velour::exec::{Machine, Points, Values};
 use velour::lang::symbols::Symbol;
@@ -83,7 +83,7 @@ fn strings_of_a_batch_die_with_it() {
         let wanted = format!("made of {}", batch * 512 + 77);
         let tags: Vec<_> = tree.lane(group.table(), 77).map(|leaf| leaf.get("tag")).collect();
         let longer = format!("{wanted}!");
-        assert_eq!(tags, [Some(Argument::String(&wanted)), Some(Argument::String(&longer))]);
+        assert_eq!(tags, [Some(Value::String(&wanted)), Some(Value::String(&longer))]);
         assert_eq!(machine.output(&group, "t").unwrap().lane(77), Values::Strings(vec![&wanted]));
         assert!(Symbol::find(&wanted).is_none(), "it is not interned for ever");
     }

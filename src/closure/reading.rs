@@ -27,7 +27,7 @@ pub struct Leaf<'t> {
 
 /// The value of an argument.
 #[derive(Clone, Debug)]
-pub enum Argument<'t> {
+pub enum Value<'t> {
     /// A float.
     Float(f32),
     /// A color, vector or normal.
@@ -92,12 +92,12 @@ impl<'t> Leaf<'t> {
     }
 
     /// An argument by the name of its parameter or keyword; nothing for a name it was not given.
-    pub fn get(&self, name: &str) -> Option<Argument<'t>> {
+    pub fn get(&self, name: &str) -> Option<Value<'t>> {
         self.arguments().filter(|(own, _)| *own == name).last().map(|(_, value)| value)
     }
 
     /// Its arguments with their names: the positional ones, then the keywords that were given.
-    pub fn arguments(&self) -> impl Iterator<Item = (&'t str, Argument<'t>)> + use<'t> {
+    pub fn arguments(&self) -> impl Iterator<Item = (&'t str, Value<'t>)> + use<'t> {
         let Leaf { table, tree, spec, lane, node, .. } = *self;
         let Node::Leaf { first_param, param_count, first_keyword, keyword_count, .. } = tree.nodes[node.0 as usize] else {
             unreachable!("a leaf is made of a leaf's node")
@@ -111,13 +111,13 @@ impl<'t> Leaf<'t> {
     }
 }
 
-fn argument<'t>(table: &'t ClosureTable, tree: &'t Tree, param: Param, lane: usize) -> Argument<'t> {
+fn argument<'t>(table: &'t ClosureTable, tree: &'t Tree, param: Param, lane: usize) -> Value<'t> {
     match param {
-        Param::Float(column) => Argument::Float(tree.float(column, lane)),
-        Param::Triple(columns) => Argument::Triple(columns.map(|column| tree.float(column, lane))),
-        Param::Int(column) => Argument::Int(tree.int(column, lane)),
-        Param::String(column) => Argument::String(tree.text(column, lane)),
-        Param::Closure(root) => Argument::Closure(tree.leaves(table, root, lane)),
+        Param::Float(column) => Value::Float(tree.float(column, lane)),
+        Param::Triple(columns) => Value::Triple(columns.map(|column| tree.float(column, lane))),
+        Param::Int(column) => Value::Int(tree.int(column, lane)),
+        Param::String(column) => Value::String(tree.text(column, lane)),
+        Param::Closure(root) => Value::Closure(tree.leaves(table, root, lane)),
     }
 }
 
@@ -135,9 +135,9 @@ impl PartialEq for Leaf<'_> {
     }
 }
 
-impl PartialEq for Argument<'_> {
+impl PartialEq for Value<'_> {
     fn eq(&self, other: &Self) -> bool {
-        use Argument::{Closure, Float, Int, String, Triple};
+        use Value::{Closure, Float, Int, String, Triple};
         match (self, other) {
             (Float(a), Float(b)) => a == b,
             (Triple(a), Triple(b)) => a == b,
@@ -149,36 +149,36 @@ impl PartialEq for Argument<'_> {
     }
 }
 
-impl<'t> Argument<'t> {
+impl<'t> Value<'t> {
     /// The leaves of a nested closure; none for anything else.
     pub fn leaves(self) -> Option<Leaves<'t>> {
         match self {
-            Argument::Closure(leaves) => Some(leaves),
-            Argument::Float(_) | Argument::Triple(_) | Argument::Int(_) | Argument::String(_) => None,
+            Value::Closure(leaves) => Some(leaves),
+            Value::Float(_) | Value::Triple(_) | Value::Int(_) | Value::String(_) => None,
         }
     }
 }
 
-impl From<f32> for Argument<'_> {
+impl From<f32> for Value<'_> {
     fn from(value: f32) -> Self {
-        Argument::Float(value)
+        Value::Float(value)
     }
 }
 
-impl From<[f32; 3]> for Argument<'_> {
+impl From<[f32; 3]> for Value<'_> {
     fn from(value: [f32; 3]) -> Self {
-        Argument::Triple(value)
+        Value::Triple(value)
     }
 }
 
-impl From<i32> for Argument<'_> {
+impl From<i32> for Value<'_> {
     fn from(value: i32) -> Self {
-        Argument::Int(value)
+        Value::Int(value)
     }
 }
 
-impl<'t> From<&'t str> for Argument<'t> {
+impl<'t> From<&'t str> for Value<'t> {
     fn from(value: &'t str) -> Self {
-        Argument::String(value)
+        Value::String(value)
     }
 }

@@ -3,9 +3,9 @@
 use super::error::{GroupError, GroupProblem, GroupSubject};
 use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
 use super::shader::Shader;
+use crate::closure::Library;
 use crate::exec::{Group, Locate, ReportPlace};
 use crate::ir::lower::{Binding, Layer, LowerOptions, SPANS_PER_LAYER, lower};
-use crate::lang::closures::ClosureTable;
 use crate::lang::types::{Base, Type};
 use crate::optimize::{OptimizeOptions, optimize};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use velour_grammar::{Sources, Span};
 /// Collects layers, parameters and connections, and makes a group of them.
 #[derive(Clone, Debug)]
 pub struct GroupBuilder {
-    closures: Arc<ClosureTable>,
+    closures: Arc<Library>,
     layers: Vec<Layer>,
     sources: Vec<Sources>,
     lower: LowerOptions,
@@ -24,7 +24,7 @@ pub struct GroupBuilder {
 
 impl GroupBuilder {
     /// An empty group.
-    pub fn new(closures: Arc<ClosureTable>) -> Self {
+    pub fn new(closures: Arc<Library>) -> Self {
         GroupBuilder {
             closures,
             layers: Vec::new(),
@@ -142,7 +142,7 @@ impl GroupBuilder {
         if let Some(error) = self.error {
             return Err(error);
         }
-        let program = optimize(lower(&self.layers, self.lower), &self.closures, self.optimize);
+        let program = optimize(lower(&self.layers, self.lower), self.closures.table(), self.optimize);
         let last = self.layers.last().map_or(String::new(), |layer| layer.name.clone());
         let names = self.layers.iter().map(|layer| (layer.shader.name.clone(), layer.name.clone())).collect();
         Group::new(program, self.closures, locator(self.sources, names)).map_err(|error| GroupError {

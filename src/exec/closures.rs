@@ -52,7 +52,7 @@ impl Run<'_> {
 
     pub(super) fn leaf(&mut self, dst: Reg, closure: ClosureId, params: &[Reg], keywords: &[(u32, Vec<Reg>)]) {
         let group = self.group;
-        let spec = group.table.get(closure);
+        let spec = group.library.get(closure);
         let mut rest = params;
         self.s.params.clear();
         self.s.keywords.clear();

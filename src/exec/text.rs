@@ -38,7 +38,7 @@ impl Run<'_> {
                     Value::Strings(own.iter().map(|&reg| self.symbol_text(pick(self.regs.i(reg)))).collect())
                 }
                 TextArg::Closure => {
-                    Value::Closure(closure_text(&self.group.table, self.tree, self.closure(own[0]), lane))
+                    Value::Closure(closure_text(self.group.table(), self.tree, self.closure(own[0]), lane))
                 }
             });
         }

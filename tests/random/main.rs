@@ -14,7 +14,8 @@ use velour::ir::op::*;
 use velour::ir::print::listing;
 use velour::ir::program::*;
 use velour::ir::verify::{Problem, verify};
-use velour::lang::closures::{ClosureId, ClosureTable};
+use velour::closure::Library;
+use velour::lang::closures::ClosureId;
 use velour::lang::types::Type;
 use velour_grammar::Span;
 
@@ -50,8 +51,8 @@ fn points(lanes: usize) -> Points {
     points
 }
 
-fn group(program: Program, table: &Arc<ClosureTable>) -> Result<Group, velour::ir::verify::VerifyError> {
-    Group::new(program, table.clone(), Arc::new(|_| velour::exec::ReportPlace::default()))
+fn group(program: Program, library: &Arc<Library>) -> Result<Group, velour::ir::verify::VerifyError> {
+    Group::new(program, library.clone(), Arc::new(|_| velour::exec::ReportPlace::default()))
 }
 
 /// Runs a group over two batches and reads everything back.
@@ -70,7 +71,8 @@ fn run(group: &Group, lanes: [usize; 2]) {
 
 #[test]
 fn what_is_accepted_runs() {
-    let table = Arc::new(ClosureTable::standard());
+    let library = Arc::new(Library::standard());
+    let table = library.table();
     let programs: Vec<Program> = TEXTS
         .iter()
         .flat_map(|text| {
@@ -85,11 +87,11 @@ fn what_is_accepted_runs() {
     for number in 0..count() {
         let scratch = number % 2 == 0;
         let program = match scratch {
-            true => scratch::program(&mut choice, &table),
+            true => scratch::program(&mut choice, table),
             false => mutated(&programs[choice.below(programs.len())], &mut choice),
         };
         let lanes = [1 + choice.below(9), 1 + choice.below(9)];
-        match group(program.clone(), &table) {
+        match group(program.clone(), &library) {
             Err(error) => {
                 assert!(!error.to_string().is_empty());
                 refused[scratch as usize] += 1;
@@ -97,7 +99,7 @@ fn what_is_accepted_runs() {
             Ok(group) => {
                 accepted[scratch as usize] += 1;
                 let ran = catch_unwind(AssertUnwindSafe(|| run(&group, lanes)));
-                assert!(ran.is_ok(), "number {number} panics in batches of {lanes:?}:\n{}", listing(&program, &table));
+                assert!(ran.is_ok(), "number {number} panics in batches of {lanes:?}:\n{}", listing(&program, table));
             }
         }
     }
@@ -123,7 +125,7 @@ fn small(body: Vec<Instr>) -> Program {
 }
 
 fn problem(program: Program) -> Problem {
-    verify(&program, &ClosureTable::standard()).expect_err("it must be refused").problem
+    verify(&program, Library::standard().table()).expect_err("it must be refused").problem
 }
 
 #[test]
@@ -139,7 +141,7 @@ fn programs_made_by_hand_are_refused() {
     assert!(matches!(problem(program), Problem::TooLarge(_)));
 
     let leaf = |closure, params: Vec<Reg>, keywords| Instr::Leaf { dst: Reg(2), closure, params, keywords, span };
-    let diffuse = ClosureTable::standard().named("diffuse").next().unwrap().0;
+    let diffuse = Library::standard().named("diffuse").next().unwrap().0;
     let bare = small(vec![leaf(diffuse, vec![], vec![])]);
     assert_eq!(problem(bare), Problem::WrongCount { of: "parameters", given: 0, wanted: 3 });
     let unknown = small(vec![leaf(ClosureId(9999), vec![], vec![])]);
@@ -173,7 +175,7 @@ fn programs_made_by_hand_are_refused() {
 fn promises_beside_the_instructions_are_checked() {
     let with = |change: &dyn Fn(&mut Program)| {
         let mut program = small(vec![Instr::Unary(Unary::Sin, Reg(3), Reg(0))]);
-        assert_eq!(verify(&program, &ClosureTable::standard()), Ok(()));
+        assert_eq!(verify(&program, Library::standard().table()), Ok(()));
         change(&mut program);
         problem(program)
     };
