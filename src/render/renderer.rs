@@ -16,6 +16,7 @@ use super::wave::Wave;
 use super::world::World;
 use crate::exec::{Group, Report, ReportPlace};
 use crate::scene::{Camera, Scene};
+use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -69,6 +70,12 @@ impl Gathered {
     fn check(&self) -> Result<(), RenderError> {
         let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
         self.reports.iter().find_map(fatal).map_or(Ok(()), Err)
+    }
+}
+
+impl fmt::Debug for Renderer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Renderer").field("scene", &self.world.scene.name).finish_non_exhaustive()
     }
 }
 
