@@ -60,9 +60,6 @@ const GROWING: &[&str] = &[
     "Way",
 ];
 
-/// Matches of growing enums that are open today, a count a file: a list that only gets shorter.
-const OPEN: &[(&str, &str, usize)] = &[];
-
 /// The room of a file of `src`.
 fn room(path: &str) -> Option<usize> {
     let first = path.split('/').next()?.trim_end_matches(".rs");
@@ -154,8 +151,7 @@ fn a_match_of_a_growing_enum_names_every_variant() {
         for name in GROWING {
             let lines = found.iter().filter(|(_, named)| named.contains(*name)).map(|(line, _)| line.to_string());
             let lines: Vec<String> = lines.collect();
-            let known = OPEN.iter().find(|(path, known, _)| *path == source.path && known == name);
-            if lines.len() > known.map_or(0, |(.., count)| *count) {
+            if !lines.is_empty() {
                 wrong.push(format!("src/{}: `_ =>` in a match of {name}, lines {}", source.path, lines.join(", ")));
             }
         }
