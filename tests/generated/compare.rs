@@ -27,7 +27,7 @@ fn points(first: usize, len: usize) -> Points {
         (points.dpdx.x[lane], points.dpdy.y[lane]) = (0.08, 0.06);
         (points.n.x[lane], points.n.z[lane], points.ng.z[lane]) = (0.1 * at, 1.0, 1.0);
         (points.i.z[lane], points.dpdu.x[lane]) = (-1.0, 8.0);
-        points.ray_type[lane] = 1 + (lane as i32 & 2);
+        points.ray_type[lane] = 1 + ((first + lane) as i32 & 2);
     }
     points
 }

@@ -14,11 +14,27 @@ pub enum Ty {
     Matrix,
     Str,
     Closure,
+    /// The structure `Q`.
+    Record,
 }
 
 impl Ty {
-    pub const ALL: [Ty; 9] =
+    /// Those that can be printed.
+    pub const PRINTED: [Ty; 9] =
         [Ty::Int, Ty::Float, Ty::Color, Ty::Point, Ty::Vector, Ty::Normal, Ty::Matrix, Ty::Str, Ty::Closure];
+
+    pub const ALL: [Ty; 10] = [
+        Ty::Int,
+        Ty::Float,
+        Ty::Color,
+        Ty::Point,
+        Ty::Vector,
+        Ty::Normal,
+        Ty::Matrix,
+        Ty::Str,
+        Ty::Closure,
+        Ty::Record,
+    ];
 
     pub fn name(self) -> &'static str {
         match self {
@@ -31,6 +47,7 @@ impl Ty {
             Ty::Matrix => "matrix",
             Ty::Str => "string",
             Ty::Closure => "closure color",
+            Ty::Record => "Q",
         }
     }
 
@@ -46,6 +63,7 @@ impl Ty {
             Ty::Matrix => "m",
             Ty::Str => "h",
             Ty::Closure => "l",
+            Ty::Record => "w",
         }
     }
 
@@ -177,6 +195,7 @@ impl Maker {
                 .pick(&["matrix(1)", "matrix(0.5)", "matrix(0)", "matrix(1,0,0,0, 0,2,0,0, 0,1,3,0, 4,5,6,1)"])
                 .to_owned(),
             Ty::Str => self.pick(&["\"\"", "\"a\"", "\"b1\"", "\"perlin\"", "\"2.5\""]).to_owned(),
+            Ty::Record => "made(0.5)".to_owned(),
             Ty::Closure => self
                 .pick(&["diffuse(N)", "emission()", "transparent()", "(0 * emission())"])
                 .replace("(N)", if self.vars.iter().any(|v| v.name == "N") { "(N)" } else { "(normal(0, 0, 1))" }),
@@ -191,13 +210,19 @@ impl Maker {
             Ty::Matrix => self.matrix(d),
             Ty::Str => self.string(d),
             Ty::Closure => self.closure(d),
+            Ty::Record => {
+                let value = self.expr(Ty::Float, d);
+                self.call(Some(ty), d).unwrap_or(format!("made({value})"))
+            }
         }
     }
 
     fn int(&mut self, d: u32) -> String {
         let mut e = |ty| self.expr(ty, d);
         let (l, r) = (e(Ty::Int), e(Ty::Int));
-        match self.below(22) {
+        match self.below(24) {
+            22 => format!("raytype({})", self.pick(&["\"camera\"", "\"shadow\"", "\"diffuse\""])),
+            23 => format!("hash({}, {})", self.expr(Ty::Float, d), self.expr(Ty::Float, 0)),
             0..=4 => format!("({l} {} {r})", self.pick(&["+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>"])),
             5 | 6 => format!("({l} {} {r})", self.pick(&["<", "<=", ">", ">=", "==", "!="])),
             7 | 8 => {
@@ -262,7 +287,15 @@ impl Maker {
             "filterwidth",
         ];
         let (l, r) = (self.expr(Ty::Float, d), self.expr(Ty::Float, d));
-        match self.below(20) {
+        match self.below(22) {
+            20 => format!("made({l}).f"),
+            21 => {
+                let array = |var: &Var| var.ty == Ty::Float && var.len == 3;
+                match (self.find(array), self.find(array)) {
+                    (Some(from), Some(to)) => format!("moved({}, {}, {})", from.name, self.expr(Ty::Int, d), to.name),
+                    _ => r,
+                }
+            }
             0..=5 => format!("({l} {} {r})", self.pick(&["+", "-", "*", "/"])),
             6 | 7 => format!("{}({l})", self.pick(ONE)),
             8 => format!("{}({l}, {r})", self.pick(&["pow", "fmod", "atan2", "min", "max", "step"])),

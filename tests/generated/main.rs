@@ -63,6 +63,26 @@ fn made_up_shaders_mean_one_thing() {
 }
 
 #[test]
+fn a_difference_is_found_and_cut_down() {
+    // What is known before a shader runs is a matter of optimisation, and this function tells.
+    let lines = [
+        "shader s(output float x = 0.5) {",
+        "x += u;",
+        "if (v > 0.5) {",
+        "x = 2;",
+        "}",
+        "for (int n = 0; n < 2; ++n) {",
+    ];
+    let lines = [&lines[..], &["printf(\"%d\\n\", isconstant(1.0 + 1));", "}", "}"]].concat();
+    let lines: Vec<String> = lines.into_iter().map(str::to_owned).collect();
+    let compiler = Compiler::new();
+    let found = problem(&compile(&compiler, &lines.join("\n")).unwrap()).unwrap();
+    assert!(found.starts_with("optimised, alone: print 0"), "{found}");
+    let short = shrink::shrunk(&compiler, &lines);
+    assert_eq!(short, [lines[0].clone(), lines[6].clone(), "}".to_owned()]);
+}
+
+#[test]
 fn programs_are_long_and_of_all_kinds() {
     let texts: Vec<String> = (0..200).map(|program| lines_of(program).join("\n")).collect();
     for word in [

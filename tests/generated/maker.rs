@@ -39,13 +39,18 @@ pub struct Maker {
     in_function: bool,
 }
 
-const STRUCTURE: &str = "struct Q { float f; int k[2]; color c; string s; matrix m; };";
+/// What every shader has: a structure, what makes one, and a function on arrays.
+const HEAD: [&str; 3] = [
+    "struct Q { float f; int k[2]; color c; string s; matrix m; };",
+    "Q made(float f) { Q z; z.f = f; if (f > 1) { z.k[1] = 3; return z; } z.c[1] = f; return z; }",
+    "float moved(float z[], int n, output float w[]) { w[n] = z[0] + w[1]; if (z[1] > 2) return z[n]; w[0] = 0.5; return z[2]; }",
+];
 
 impl Maker {
     pub fn new(seed: u64) -> Self {
         Maker {
             state: seed,
-            lines: vec![STRUCTURE.to_owned()],
+            lines: HEAD.map(str::to_owned).to_vec(),
             vars: Vec::new(),
             funs: Vec::new(),
             fuel: 0,
@@ -111,6 +116,7 @@ impl Maker {
         {
             self.add(name, ty, len, true);
         }
+        self.add("q", Ty::Record, 0, true);
         self.add_structure("q", true);
         self.fuel = 100;
         self.declarations();
@@ -150,16 +156,19 @@ impl Maker {
         }
         if self.one_in(2) {
             self.line("Q r[2];".to_owned());
+            self.add("r[@]", Ty::Record, 0, true);
             self.add_structure("r[@]", true);
-        }
-        if self.one_in(3) {
-            self.line("Q w = q;".to_owned());
-            self.add_structure("w", true);
         }
     }
 
     fn declaration(&mut self, ty: Ty) {
         let name = self.fresh(ty.letter());
+        if ty == Ty::Record {
+            let value = self.expr(ty, 2);
+            self.line(format!("Q {name} = {value};"));
+            self.add(&name, ty, 0, true);
+            return self.add_structure(&name, true);
+        }
         match self.below(4) {
             0 => {
                 self.line(format!("{} {name};", ty.name()));
@@ -190,6 +199,9 @@ impl Maker {
             heads.push(format!("{}{} {param}", if output { "output " } else { "" }, ty.name()));
             params.push((ty, output));
             self.add(&param, ty, 0, output);
+            if ty == Ty::Record {
+                self.add_structure(&param, output);
+            }
         }
         let head = returns.map_or("void", Ty::name);
         self.line(format!("{head} {name}({}) {{", heads.join(", ")));
@@ -243,10 +255,12 @@ impl Maker {
             }
             11 if self.in_function || self.depth > 0 => self.leave(),
             12 => {
+                let ty = self.pick(&Ty::PRINTED);
                 let value = self.expr(ty, 2);
                 self.line(format!("printf(\"{}\\n\", {value});", ty.format()));
             }
             13 => {
+                let ty = self.pick(&Ty::PRINTED);
                 let (x, y, z) = (self.expr(ty, 1), self.expr(ty, 1), self.expr(Ty::Float, 1));
                 self.line(format!("printf(\"{0} {0} %.9g\\n\", {x}, {y}, {z});", ty.format()));
             }
@@ -262,7 +276,7 @@ impl Maker {
                 let value = call.unwrap_or_else(|| self.expr(ty, 2));
                 self.line(format!("{value};"));
             }
-            _ => self.structures(),
+            _ => self.assignment(Ty::Record),
         }
     }
 
@@ -278,7 +292,7 @@ impl Maker {
             Ty::Float | Ty::Color | Ty::Point | Ty::Vector | Ty::Normal => {
                 self.pick(&["=", "=", "+=", "-=", "*=", "/="])
             }
-            Ty::Matrix | Ty::Str | Ty::Closure => "=",
+            Ty::Matrix | Ty::Str | Ty::Closure | Ty::Record => "=",
         };
         self.line(format!("{place} {op} {value};"));
     }
@@ -325,17 +339,5 @@ impl Maker {
             _ => self.pick(&["return", "return", "exit()"]).to_owned(),
         };
         self.line(format!("if ({condition}) {word};"));
-    }
-
-    /// Whole structures and their arrays.
-    fn structures(&mut self) {
-        let all: Vec<String> =
-            self.vars.iter().filter_map(|var| var.name.strip_suffix(".f").map(str::to_owned)).collect();
-        if all.len() < 2 {
-            return self.assignment(Ty::Float);
-        }
-        let (a, b) = (self.below(all.len()), self.below(all.len()));
-        let (a, b) = (self.with_index(&all[a], 2), self.with_index(&all[b], 2));
-        self.line(format!("{a} = {b};"));
     }
 }
