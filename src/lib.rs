@@ -41,7 +41,7 @@
 //! | [`ir`] | typed shaders to a program; print; verify |
 //! | [`optimize`] | program to program: derivatives, dead code, uniform values, operations in pairs |
 //! | [`bsdf`] | one file a scattering model, in its local frame |
-//! | [`closure`] | the tree: print, flatten to lobes, albedo scaling, evaluate, sample |
+//! | [`closure`] | what each closure is, one file a family; the tree: print, flatten to lobes, albedo scaling, evaluate, sample |
 //! | [`exec`] | program and points to closure tree |
 //! | [`compile`] | the pipeline in one place |
 //! | [`scene`] | scene XML, meshes, shader groups |
@@ -55,7 +55,8 @@
 //! - Past [`check`] a shader cannot fail. What can go wrong at run time is data, reported as [`exec::Report`].
 //! - A verified program cannot fail: [`ir::verify`] says what that means.
 //! - No width of a batch, no thread count and no instruction set changes a bit of a result.
-//! - A closure is declared once, in [`lang::closures`]; all else reads that table.
+//! - A closure is one [`closure::ClosureDef`]: name, arguments, documentation, promises and lobes. All else reads that, for
+//!   those of hosts as well.
 //!
 //! Decision (2026-11-22): `bsdf` and `closure` stand above `exec`, because the machine fills the tree that `closure`
 //! owns, and `closure` evaluates models of `bsdf`, instead of `exec` owning a tree that others read.

@@ -390,7 +390,7 @@ fn every_problem_has_a_code_of_its_own() {
         assert_eq!(error.problem.code(), *code, "{text}\n{error}");
         assert!(seen.insert(*code) && error.place.is_some() != (*code == "S0101"), "{error:?}");
     }
-    let inner = |text: &str| match Scene::load(text, &search, &ShaderFiles::default()).map(|_| ()).unwrap_err().problem
+    let inner = |text: &str| match *Scene::load(text, &search, &ShaderFiles::default()).map(|_| ()).unwrap_err().problem
     {
         SceneProblem::Group(error) => error.problem.code(),
         SceneProblem::Shader { error, .. } => match &*error {

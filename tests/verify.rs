@@ -36,7 +36,7 @@ fn failures(report: &Report) -> Vec<String> {
 fn every_closure_passes() {
     let compiler = Compiler::new();
     let long = std::env::var_os("VELOUR_LONG_TESTS").is_some();
-    let subjects: Vec<ClosureSubject> = (0..compiler.closures.specs.len() as u32)
+    let subjects: Vec<ClosureSubject> = (0..compiler.closures.specs().len() as u32)
         .map(velour::lang::closures::ClosureId)
         .map(|id| ClosureSubject::new(&compiler, id, long, Settings::default()).expect("a shader that calls it"))
         .collect();

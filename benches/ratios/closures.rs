@@ -79,7 +79,7 @@ lanes! {
 
 fn layered(table: &Table) {
     let mut batch = Batch::new("surface s() { Ci = sheen(diffuse(N), N, color(0.8), 0.3); }");
-    let sheen = Sheen::<EXACT, true>::prepare(params([0.3, 0.1]));
+    let sheen = Sheen::<EXACT, true>::prepare(params([0.3]));
     let (wo, wi) = (batch.wo.clone(), directions(2));
     let view = views(sheen, &wo);
     let alpha_o: Vec<f32> = wo.z.iter().map(|&c| 1.0 - 0.8 * sheen.albedo(c)).collect();
@@ -109,7 +109,7 @@ pub fn rows(table: &Table) {
     let eon = eon::Eon::prepare(params([0.4, 1.0, 1.0, 1.0]));
     lobe(table, "eon", "oren_nayar_diffuse_bsdf(N, color(1), 0.4, \"energy_compensation\", 1)", eon);
     lobe(table, "velvet", "ashikhmin_velvet(N, 0.4)", velvet::Velvet::prepare(params([0.4])));
-    lobe(table, "sheen", "sheen_bsdf(N, color(1), 0.3)", Sheen::<EXACT, true>::prepare(params([0.3, 0.1])));
+    lobe(table, "sheen", "sheen_bsdf(N, color(1), 0.3)", Sheen::<EXACT, true>::prepare(params([0.3])));
     let widths = params([0.3, 0.3, 1.5]);
     let ggx = Microfacet::<Ggx, Dielectric, false>::prepare(widths);
     lobe(table, "ggx", "microfacet(\"ggx\", N, N, 0.3, 0.3, 1.5, 0)", ggx);

@@ -86,7 +86,7 @@ impl Batch {
     /// Runs the shader and flattens its tree.
     pub fn flatten(&mut self) {
         let tree = self.machine.shade(&self.group, black_box(&self.points));
-        self.lobes.flatten(self.group.table(), tree, &self.wo, &self.points.ng);
+        self.lobes.flatten(self.group.library(), tree, &self.wo, &self.points.ng);
     }
 
     /// The largest difference of an evaluation to columns that should equal it.

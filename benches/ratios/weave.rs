@@ -67,7 +67,7 @@ fn luminance(c: Vec3) -> f32 {
 fn lobes(thread: Vec3, roughness: f32, normal: Vec3, wo: Vec3) -> Lobes {
     let frame = Frame::from_normal(normal);
     let wo = frame.to_local(wo);
-    let sheen = Sheen::<EXACT, true>::prepare(params([roughness, 0.1]));
+    let sheen = Sheen::<EXACT, true>::prepare(params([roughness]));
     let albedo = sheen.albedo(wo.z);
     let alpha_o = (1.0 - TINT * albedo).max(0.0);
     let base = OrenNayar::prepare(params([0.4])).albedo(wo.z);
@@ -80,7 +80,7 @@ fn lobes(thread: Vec3, roughness: f32, normal: Vec3, wo: Vec3) -> Lobes {
 #[inline(always)]
 fn evaluate(lobes: Lobes, wi: Vec3) -> (Vec3, f32) {
     let wi = lobes.frame.to_local(wi);
-    let sheen = Sheen::<EXACT, true>::prepare(params([lobes.roughness, 0.1]));
+    let sheen = Sheen::<EXACT, true>::prepare(params([lobes.roughness]));
     let top = sheen.eval_from(lobes.wo, lobes.view, wi);
     let base = OrenNayar::prepare(params([0.4])).eval(lobes.wo, wi);
     let scale = (1.0 - TINT * sheen.albedo(wi.z)).min(lobes.alpha_o) * base.f_cos;

@@ -4,7 +4,7 @@ use super::bivariate::{collapse, horner};
 use super::cosine_power::MAX_EXPONENT;
 use super::cosine_power::log2_one_minus;
 use super::power::{exp2, log2};
-use super::{Eval, Params, Scatter, View, above_horizon, limited, select};
+use super::{Eval, Params, Scatter, Spread, View, above_horizon, limited, select};
 use crate::math::elementary::{expm1, ln};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf, turn};
 use glam::Vec3;
@@ -61,6 +61,7 @@ const TILT: [[f32; 3]; 3] = [
 
 impl Scatter for Highlight {
     const PARAMS: usize = 5;
+    const SPREAD: Spread = Spread::Narrow;
     const COLORED: bool = true;
 
     #[inline(always)]

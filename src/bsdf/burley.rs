@@ -1,6 +1,6 @@
 //! Burley's diffuse reflection of 2012, with the rise or fall toward grazing that roughness brings.
 
-use super::{Eval, Params, Scatter, View, limited};
+use super::{Eval, Params, Scatter, Spread, View, limited};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
@@ -39,6 +39,7 @@ impl Burley {
 
 impl Scatter for Burley {
     const PARAMS: usize = 1;
+    const SPREAD: Spread = Spread::Even;
     const VIEW: usize = 1;
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Rough diffuse reflection that loses no light: Fujii's form of Oren and Nayar with the light scattered several times.
 
 use super::oren_nayar::OrenNayar;
-use super::{Eval, Params, Scatter, View, limited};
+use super::{Eval, Params, Scatter, Spread, View, limited};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -45,6 +45,7 @@ impl Eon {
 
 impl Scatter for Eon {
     const PARAMS: usize = 4;
+    const SPREAD: Spread = Spread::Even;
     const VIEW: usize = 1;
     const COLORED: bool = true;
 

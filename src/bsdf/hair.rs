@@ -2,7 +2,7 @@
 
 use super::fresnel::dielectric;
 use super::power::exp;
-use super::{Eval, Params, Scatter, Side, View, limited, select};
+use super::{Eval, Params, Scatter, Side, Spread, View, limited, select};
 use crate::math::elementary::{asin, atan2, ln, sincos};
 use crate::math::warp::turn;
 use glam::Vec3;
@@ -123,6 +123,7 @@ impl<const P: u32> Hair<P> {
 
 impl<const P: u32> Scatter for Hair<P> {
     const PARAMS: usize = 10;
+    const SPREAD: Spread = Spread::Narrow;
     const SIDE: Side = Side::Both;
     const COLORED: bool = true;
     const VIEW: usize = 5;

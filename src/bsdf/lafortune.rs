@@ -2,7 +2,7 @@
 
 use super::cosine_power::{CosinePower, CosinePowerAlbedo, log2_one_minus};
 use super::power::exp2;
-use super::{Eval, Params, Scatter, View, above_horizon, limited, select};
+use super::{Eval, Params, Scatter, Spread, View, above_horizon, limited, select};
 use glam::Vec3;
 use std::f32::consts::TAU;
 
@@ -67,6 +67,7 @@ impl Lafortune {
 
 impl Scatter for Lafortune {
     const PARAMS: usize = 4;
+    const SPREAD: Spread = Spread::Narrow;
     const VIEW: usize = 4;
 
     #[inline(always)]

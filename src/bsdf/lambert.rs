@@ -1,6 +1,6 @@
 //! Lambert's reflection and transmission: the same radiance in every direction of one hemisphere.
 
-use super::{Eval, Params, Scatter, Side, View};
+use super::{Eval, Params, Scatter, Side, Spread, View};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::Vec3;
 
@@ -16,6 +16,7 @@ pub struct Translucent;
 
 impl Scatter for Lambert {
     const PARAMS: usize = 0;
+    const SPREAD: Spread = Spread::Even;
 
     #[inline(always)]
     fn prepare(_: Params) -> Self {
@@ -41,6 +42,7 @@ impl Scatter for Lambert {
 
 impl Scatter for Translucent {
     const PARAMS: usize = 0;
+    const SPREAD: Spread = Spread::Even;
     const SIDE: Side = Side::Other;
 
     #[inline(always)]

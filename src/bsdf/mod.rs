@@ -32,6 +32,7 @@ pub mod specular;
 pub mod velvet;
 pub mod ward;
 
+use crate::math::quadrature::GAUSS_8;
 use glam::Vec3;
 
 /// What a model says about one pair of directions.
@@ -68,21 +69,48 @@ pub enum Side {
     Both,
 }
 
+/// How wide a model scatters, whatever the parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spread {
+    /// About evenly in every direction, so that light which is thrown back at it from above comes out in the end: diffuse.
+    Even,
+    /// Widely, with a preference for some directions: sheen.
+    Broad,
+    /// About one direction: glossy.
+    Narrow,
+}
+
+/// Which of several ways a model goes, the same in all lanes of a lobe: a choice of the model's own, as a number. 0 is the default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Choice(pub u8);
+
 /// Up to five numbers that a model derives from the viewer's direction.
 pub type View = [f32; 5];
 
 /// A scattering model with its constants, as the lane loops see it.
 ///
 /// Directions are unit, local (z = shading normal) and point away from the surface; `wo.z` is positive.
-pub trait Scatter: Copy {
-    /// How many of the parameters it reads.
+pub trait Scatter: Copy + 'static {
+    /// How many of the parameters it reads, at most [`MAX_PARAMS`].
     const PARAMS: usize;
     /// Where light leaves the surface.
     const SIDE: Side = Side::Same;
+    /// How wide it scatters.
+    const SPREAD: Spread = Spread::Broad;
+    /// True when [`Scatter::top_albedo`] is more exact than [`Scatter::albedo`], and dearer.
+    const TOP: bool = false;
+    /// For sheens whose albedo is [`sheen::albedo::AlbedoCurve::exact`] of their first parameter: whether they are softened. Such an
+    /// albedo may be found by several methods, and be kept from one direction for others.
+    const SHEEN: Option<bool> = None;
     /// True when [`Scatter::color_from`] is not white everywhere.
     const COLORED: bool = false;
     /// Makes the constants from parameters, which are clamped to what the model supports.
     fn prepare(params: Params) -> Self;
+    /// The same model, going another way than by default; models with one way only go it.
+    #[inline(always)]
+    fn choose(self, _choice: Choice) -> Self {
+        self
+    }
     /// How many of the numbers of [`Scatter::view`] it uses.
     const VIEW: usize = 0;
     /// What depends on the viewer alone, computed once for all directions that are evaluated.
@@ -137,7 +165,7 @@ pub trait Scatter: Copy {
     #[inline(always)]
     fn average_albedo(&self) -> f32 {
         let mut sum = 0.0;
-        for (x, weight) in GAUSS {
+        for (x, weight) in GAUSS_8 {
             for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
                 let t2 = t * t;
                 sum += 3.0 * weight * t2 * t2 * t * self.top_albedo(between(t2 * t));
@@ -172,11 +200,3 @@ pub(crate) fn limited(value: f32, least: f32, most: f32) -> f32 {
 pub(crate) fn above_horizon(w: Vec3) -> Vec3 {
     w * select(w.z > 0.0, 1.0, 0.0)
 }
-
-/// Positive nodes and weights of the 8-point Gauss-Legendre rule on -1..1, exact to f32.
-pub(crate) const GAUSS: [(f32, f32); 4] = [
-    (0.183_434_64, 0.362_683_78),
-    (0.525_532_4, 0.313_706_65),
-    (0.796_666_5, 0.222_381_03),
-    (0.960_289_86, 0.101_228_54),
-];

@@ -1,6 +1,6 @@
 //! Rough diffuse reflection of Oren and Nayar, the qualitative model of 1994.
 
-use super::{Eval, Params, Scatter, View, select};
+use super::{Eval, Params, Scatter, Spread, View, select};
 use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI};
@@ -50,6 +50,7 @@ impl OrenNayar {
 
 impl Scatter for OrenNayar {
     const PARAMS: usize = 1;
+    const SPREAD: Spread = Spread::Even;
 
     #[inline(always)]
     fn prepare([sigma, ..]: Params) -> Self {

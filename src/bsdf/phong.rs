@@ -1,7 +1,7 @@
 //! Phong's highlight about the mirror direction, in the form of Lafortune and Willems, which conserves energy.
 
 use super::cosine_power::{CosinePower, CosinePowerAlbedo};
-use super::{Eval, Params, Scatter, View, above_horizon, select};
+use super::{Eval, Params, Scatter, Spread, View, above_horizon, select};
 use glam::Vec3;
 use std::f32::consts::TAU;
 
@@ -20,6 +20,7 @@ pub struct Phong {
 
 impl Scatter for Phong {
     const PARAMS: usize = 1;
+    const SPREAD: Spread = Spread::Narrow;
 
     #[inline(always)]
     fn prepare([exponent, ..]: Params) -> Self {

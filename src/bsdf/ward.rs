@@ -2,7 +2,7 @@
 
 use super::bivariate::{collapse, horner};
 use super::power::exp;
-use super::{Eval, Params, Scatter, View, above_horizon, limited, select};
+use super::{Eval, Params, Scatter, Spread, View, above_horizon, limited, select};
 use crate::math::elementary::ln;
 use crate::math::warp::turn;
 use glam::Vec3;
@@ -54,6 +54,7 @@ const PUBLISHED_ALBEDO: [[f32; 4]; 6] = [
 
 impl<const BOUNDED: bool> Scatter for Ward<BOUNDED> {
     const PARAMS: usize = 2;
+    const SPREAD: Spread = Spread::Narrow;
 
     #[inline(always)]
     fn prepare([x, y, ..]: Params) -> Self {

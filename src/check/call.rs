@@ -6,7 +6,7 @@ use super::expr::nearest;
 use super::rank::{better_overload, rank_type, same_storage, score_type};
 use super::typed::{Argument, Expr, ExprKind, FunctionId};
 use crate::lang::builtins::{self, Formal, NOT_YET};
-use crate::lang::closures::{ClosureId, Model, ParamSpec};
+use crate::lang::closures::{ClosureId, ParamSpec};
 use crate::lang::types::{Length, Type};
 use velour_grammar::ast::{self, Ident};
 use velour_grammar::{Diagnostic, Span};
@@ -244,14 +244,11 @@ impl Checker<'_> {
                 let choices = spec.keywords[at].choices.join("\", \"");
                 self.report(Diagnostic::error("E0411", value.span, message).help(format!("choose \"{choices}\"")));
             }
-            if let (Model::SheenBsdf, "mode", ExprKind::Int(mode @ (..=-1 | 2..))) =
-                (spec.model, word.as_str(), &value.kind)
+            if let (Some(numbered), ExprKind::Int(given)) = (spec.keywords[at].numbered, &value.kind)
+                && !(numbered.least..=numbered.most).contains(given)
             {
-                let message = format!("`{}` has no \"mode\" {mode}", spec.name);
-                let diagnostic = Diagnostic::error("E0412", value.span, message);
-                self.report(diagnostic.help(
-                    "0 is the sheen of Estevez and Kulla, and the default; 1 that of Zeltner, Burley and Chiang",
-                ));
+                let message = format!("`{}` has no \"{word}\" {given}", spec.name);
+                self.report(Diagnostic::error("E0412", value.span, message).help(numbered.meaning));
             }
             if let Some((_, what)) = spec.keywords[at].left_out.filter(|(nothing, _)| !is_literally(&value, *nothing)) {
                 let message = format!("velour does not model \"{word}\" of `{}`", spec.name);

@@ -6,7 +6,8 @@ use super::info_file::shader_text;
 use super::speak::say;
 use crate::compile::CompileError;
 use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
-use crate::lang::closures::{self, Claim, ClosureSpec, ClosureTable, ParamKind, ParamSpec, Waiver};
+use crate::lang::closures::{self, ClosureTable};
+use crate::lang::describe::{closure_head, closure_text};
 use crate::scene::nearest;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -24,18 +25,19 @@ pub struct InfoArgs {
 
 /// Prints what is known of the subject.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let table = ClosureTable::standard();
+    let closures = args.compile.compiler()?.closures;
+    let table = closures.table();
     let header = header_functions(args)?;
     let Some(subject) = &args.subject else {
-        say(&everything(&table, &header));
+        say(&everything(table, &header));
         return Ok(());
     };
     if subject.ends_with(".osl") || Path::new(subject).is_file() {
         return file(args, Path::new(subject));
     }
-    let text = one(&table, &header, subject);
+    let text = one(table, &header, subject);
     if text.is_empty() {
-        return Err(Failure::Usage(unknown(&table, &header, subject)));
+        return Err(Failure::Usage(unknown(table, &header, subject)));
     }
     say(&text);
     Ok(())
@@ -113,16 +115,7 @@ fn columns(names: &[&str]) -> String {
 fn one(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
     let mut out = String::new();
     for (_, spec) in table.named(name) {
-        out += &format!("closure color {}\n    {}\n", closure_head(spec), spec.doc);
-        for (list, title) in [(&spec.params, "parameters"), (&spec.keywords, "keyword parameters")] {
-            if !list.is_empty() {
-                out += &format!("    {title}:\n");
-            }
-            for param in list {
-                out += &format!("        {} {}: {}\n", kind_name(param.kind), param.name, param.doc);
-            }
-        }
-        out += &promises(spec);
+        out += &closure_text(spec);
     }
     for signature in builtins::signatures(name).unwrap_or_default() {
         out += &format!("{}\n", signature_text(name, signature));
@@ -134,39 +127,6 @@ fn one(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
         out += "    velour knows this function and does not run it yet: a call is an error\n";
     }
     out
-}
-
-/// What a closure does not promise, which `velour verify` measures.
-fn promises(spec: &ClosureSpec) -> String {
-    let mut out = String::new();
-    for Waiver { claim, only, why } in spec.waivers {
-        let what = match claim {
-            Claim::Energy => "may reflect more than arrives",
-            Claim::Reciprocity => "is not reciprocal",
-        };
-        let when = only.map_or(String::new(), |(name, value)| format!(" with {name} {value}"));
-        out += &format!("    {what}{when}: {why}\n");
-    }
-    out
-}
-
-fn closure_head(spec: &ClosureSpec) -> String {
-    let param = |p: &ParamSpec| format!("{} {}", kind_name(p.kind), p.name);
-    let keyword = |p: &ParamSpec| format!("[\"{}\", {}]", p.name, kind_name(p.kind));
-    let all: Vec<String> = spec.params.iter().map(param).chain(spec.keywords.iter().map(keyword)).collect();
-    format!("{}({})", spec.name, all.join(", "))
-}
-
-fn kind_name(kind: ParamKind) -> &'static str {
-    match kind {
-        ParamKind::Float => "float",
-        ParamKind::Int => "int",
-        ParamKind::Color => "color",
-        ParamKind::Vector => "vector",
-        ParamKind::Normal => "normal",
-        ParamKind::String => "string",
-        ParamKind::Closure => "closure color",
-    }
 }
 
 fn signature_text(name: &str, signature: &Signature) -> String {

@@ -85,7 +85,7 @@ fn lobe_table(args: &TreeArgs, group: &Group, tree: &crate::closure::tree::Tree,
     let settings = Settings { layering: args.layering, shadowing: args.shadowing, ..Settings::default() };
     let mut lobes = Lobes::new(settings);
     let wo = Column3::splat(-points.i.get(0), 1);
-    lobes.flatten(group.table(), tree, &wo, &points.ng);
+    lobes.flatten(group.library(), tree, &wo, &points.ng);
     let mut out =
         format!("{:<14} {:<26} {:>7} {:>6} {:>8} {:>6}", "lobe", "weight", "albedo", "depth", "through", "pick");
     for lobe in lobes.describe(0) {

@@ -78,7 +78,7 @@ fn subjects(args: &VerifyArgs) -> Result<Vec<Box<dyn Subject>>, Failure> {
     let settings = Settings { layering: args.layering, shadowing: args.shadowing, ..Settings::default() };
     let mut out: Vec<Box<dyn Subject>> = Vec::new();
     let (mut wrong, mut files) = (false, false);
-    let all: Vec<String> = compiler.closures.specs.iter().map(|spec| spec.name.to_owned()).collect();
+    let all: Vec<String> = compiler.closures.specs().iter().map(|spec| spec.name.to_owned()).collect();
     let mut names = if args.subjects.is_empty() { all } else { args.subjects.clone() };
     // Overloads share a name and are verified together.
     let mut seen = std::collections::HashSet::new();
@@ -136,7 +136,7 @@ fn unknown(compiler: &Compiler, name: &str) -> String {
     if NOT_YET.contains(&name) {
         return format!("error: velour knows the closure `{name}` and does not run it yet");
     }
-    let names: Vec<&str> = compiler.closures.specs.iter().map(|spec| spec.name).collect();
+    let names: Vec<&str> = compiler.closures.specs().iter().map(|spec| spec.name).collect();
     let help = match nearest(name, &names) {
         Some(near) => format!("did you mean `{near}`?"),
         None => "`velour info` lists all closures".to_owned(),

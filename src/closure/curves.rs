@@ -4,10 +4,9 @@
 //! a recurrence, and each evaluation asks for them again (a weave and one evaluation take 78 ns a point instead of 84, with the
 //! shorter way of `normals`); instead of making the curve anew from the roughness.
 
-use super::kinds::Kind;
+use super::lobe_models::{LobeModel, LobeModels};
 use super::settings::SheenAlbedo;
 use super::store::Store;
-use super::surfaces::{Surface, Surfaces, Values};
 use crate::bsdf::sheen::albedo::{AlbedoCurve, SHORT};
 use crate::bsdf::sheen::charlie::clamp_roughness;
 use crate::bsdf::sheen::shadowing::Shadowing;
@@ -20,15 +19,14 @@ const BLOCK: usize = 16;
 /// The coefficients of a block of lanes.
 pub type Curves = [[f32; BLOCK]; SHORT];
 
-/// Adds the curves of a surface, where it is a sheen that has one a lane; says how many blocks there were before, or nothing.
-pub fn push_curves(surfaces: &Surfaces, surface: &Surface, curves: &mut Store<Curves>) -> Option<u32> {
-    let (Kind::Sheen(term, soft) | Kind::SheenByNormals(term, soft)) = surface.kind else { return None };
-    let Values::Columns(offsets) = surface.params else { return None };
-    if !term.is_exact() || surfaces.sheen_albedo != SheenAlbedo::Fit {
+/// Adds the curves of a model, where it is a sheen that has one a lane; says how many blocks there were before, or nothing.
+pub fn push_curves(models: &LobeModels, model: &LobeModel, curves: &mut Store<Curves>) -> Option<u32> {
+    let soft = model.kind.loops()?.sheen?;
+    let roughness = models.first_param(model)?;
+    if models.sheen_albedo != SheenAlbedo::Fit {
         return None;
     }
-    let at = curves.take(surfaces.lanes.div_ceil(BLOCK));
-    let roughness = surfaces.column(offsets[0]);
+    let at = curves.take(models.lanes.div_ceil(BLOCK));
     if soft {
         curve_lanes::<true>(roughness, &mut curves[at..]);
     } else {

@@ -1,32 +1,30 @@
 //! Albedo scaling: what each layer lets through, for the layers of a batch in order, linear in their number.
 //!
-//! A `sheen` layer takes t a(w) with t the largest component of its tint and a the albedo of its lobe; a `layer(top, base)`
+//! A `sheen` layer takes t a(w) with its coverage t, the largest component of its tint, and a the albedo of its lobe; a `layer(top, base)`
 //! takes the albedo of any tree: sums add, weights scale by their largest component, and a layer inside the top counts
 //! as its own top plus what that lets through of its base. The sum is clamped to 1. The albedo of each leaf is the
 //! one its model documents; transmitting lobes count too, as what they pass has left the base's light.
 
-use super::batch::{
-    LayerColumns, Triples, albedo_lanes, average_lanes, layer_lanes, sheen_albedo_lanes, top_albedo_lanes,
-};
+use super::batch::{LayerColumns, layer_lanes, sheen_albedo_lanes};
+use super::coats::Coats;
 use super::curves::{Curves, curve_albedo_lanes, push_curves};
-use super::kinds::Kind;
-use super::kinds::with_source;
-use super::media::Media;
+use super::lobe_kind::Way;
+use super::lobe_models::{Column, LobeModel, LobeModels};
 use super::settings::{Layering, SheenAlbedo};
-use super::store::Store;
-use super::surfaces::{NONE, Surface, Surfaces, Values};
+use super::source::Triples;
+use super::store::{NONE, Store};
 use super::weights::{MOST_WEIGHT, Operand, multiply, usable};
+use crate::bsdf::between;
 use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD};
-use crate::bsdf::specular::{reflection, refraction};
-use crate::bsdf::{GAUSS, between};
 use crate::lanes;
 use crate::math::columns::Column3;
+use crate::math::quadrature::GAUSS_8;
 use glam::Vec3;
 use std::borrow::Cow;
 
 /// Which direction an albedo is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Side {
+pub enum Toward {
     /// The viewer.
     View,
     /// The light of the last evaluation.
@@ -39,10 +37,10 @@ pub enum Side {
 #[derive(Clone, Copy, Debug)]
 pub enum Top {
     /// One lobe.
-    Surface(u32),
+    Lobe(u32),
     /// A tree: index of its operation.
     Tree(u32),
-    /// The boundary of the medium that the base lies in.
+    /// The boundary of the coat that the base lies under.
     Boundary,
 }
 
@@ -53,12 +51,12 @@ pub enum Step {
     Zero,
     /// The lobes `first..last` of [`Layers::leaves`].
     Leaves(u32, u32),
-    /// A weight (offset of a column of largest components) times a step.
-    Scale(u32, u32),
+    /// A weight (a column of largest components) times a step.
+    Scale(Column, u32),
     /// The sum of two steps.
     Add(u32, u32),
     /// The first step where the column is not 0, else the second.
-    Select(u32, u32, u32),
+    Select(Column, u32, u32),
     /// The first step over the second.
     Over(u32, u32),
 }
@@ -74,10 +72,10 @@ pub struct Layer {
     pub rule: Layering,
     /// What it consists of.
     pub top: Top,
-    /// The medium that its base lies in, or [`NONE`].
-    pub medium: u32,
-    /// Offset in the surfaces' data of the column t.
-    pub t: u32,
+    /// The coat that its base lies under, or [`NONE`].
+    pub coat: u32,
+    /// How much of the base its top covers.
+    pub coverage: Column,
 }
 
 /// All layers of a batch.
@@ -87,9 +85,9 @@ pub struct Layers {
     pub list: Vec<Layer>,
     /// Steps of the albedos of trees, operands first.
     pub steps: Vec<Step>,
-    /// Surfaces with the offsets of their t, for [`Step::Leaves`].
-    pub leaves: Vec<(u32, u32)>,
-    /// Where [`Layers::seen`] has the albedo of each surface toward the viewer, or [`NONE`].
+    /// Models with their coverages, for [`Step::Leaves`].
+    pub leaves: Vec<(u32, Column)>,
+    /// Where [`Layers::seen`] has the albedo of each model toward the viewer, or [`NONE`].
     seen_at: Vec<u32>,
     seen: Vec<f32>,
     /// Where [`Layers::curves`] has the albedo curves of each layer's sheen, or [`NONE`].
@@ -122,16 +120,16 @@ impl Layers {
         &self.through[layer as usize * n..(layer as usize + 1) * n]
     }
 
-    /// The albedo of a surface toward the viewer, for picking; a covering sheen's is known by now.
-    pub fn albedo_seen(&self, surfaces: &Surfaces, index: u32, out: &mut [f32]) {
-        let surface = &surfaces.list[index as usize];
+    /// The albedo of a model toward the viewer, for picking; a covering sheen's is known by now.
+    pub fn albedo_seen(&self, models: &LobeModels, index: u32, out: &mut [f32]) {
+        let model = &models.list[index as usize];
         let at = self.seen_at.get(index as usize).copied().filter(|&at| at != NONE);
         match at {
             // A facet's is an estimate when picking, and a matter of tables when covering.
-            Some(at) if !matches!(surface.kind, Kind::Microfacet { .. }) => {
+            Some(at) if model.kind.loops().is_none_or(|loops| !loops.top) => {
                 out.copy_from_slice(&self.seen[at as usize..at as usize + out.len()]);
             }
-            _ => surface_albedo(surfaces, surface, Side::View, out),
+            _ => model_albedo(models, model, Toward::View, out),
         }
     }
 
@@ -140,46 +138,46 @@ impl Layers {
         self.list.get(layer as usize).map_or(0, |l| l.depth)
     }
 
-    /// The medium that lobes under a layer lie in, or [`NONE`].
-    pub fn medium(&self, layer: u32) -> u32 {
-        self.list.get(layer as usize).map_or(NONE, |l| l.medium)
+    /// The coat that lobes under a layer lie in, or [`NONE`].
+    pub fn coat(&self, layer: u32) -> u32 {
+        self.list.get(layer as usize).map_or(NONE, |l| l.coat)
     }
 
-    /// The layers whose top is a tree, each with the medium that it lies in.
+    /// The layers whose top is a tree, each with the coat that it lies in.
     pub fn tops(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
         let trees = self.list.iter().enumerate().filter(|(_, layer)| matches!(layer.top, Top::Tree(_)));
-        trees.map(|(index, layer)| (index, self.medium(layer.parent)))
+        trees.map(|(index, layer)| (index, self.coat(layer.parent)))
     }
 
     /// Computes what depends on the viewer alone.
-    pub fn prepare(&mut self, surfaces: &Surfaces, media: &Media, ones: &[f32]) {
-        let n = surfaces.lanes;
+    pub fn prepare(&mut self, models: &LobeModels, coats: &Coats, ones: &[f32]) {
+        let n = models.lanes;
         for store in [&mut self.alpha_o, &mut self.through, &mut self.inverse_mean, &mut self.scales] {
             store.resize(n * self.list.len(), 1.0);
         }
         self.scratch.resize(n, 0.0);
         self.seen.clear();
         self.seen_at.clear();
-        self.seen_at.resize(surfaces.list.len(), NONE);
+        self.seen_at.resize(models.list.len(), NONE);
         self.curves.clear();
         self.curves_at.clear();
-        self.run_steps(surfaces, Side::View);
+        self.run_steps(models, Toward::View);
         for index in 0..self.list.len() {
             let layer = self.list[index];
             let curves = match layer.top {
-                Top::Surface(top) => push_curves(surfaces, &surfaces.list[top as usize], &mut self.curves),
+                Top::Lobe(top) => push_curves(models, &models.list[top as usize], &mut self.curves),
                 _ => None,
             };
             self.curves_at.push(curves.unwrap_or(NONE));
             let alpha = &mut self.alpha_o[index * n..(index + 1) * n];
-            match (layer.top, media.get(layer.medium)) {
-                (Top::Boundary, Some(medium)) => alpha.copy_from_slice(&medium.pass_o),
+            match (layer.top, coats.get(layer.coat)) {
+                (Top::Boundary, Some(coat)) => alpha.copy_from_slice(&coat.pass_o),
                 _ => {
                     let kept = kept(&self.curves, self.curves_at[index]);
-                    top_albedo(&layer, kept, surfaces, Side::View, &self.values, &mut self.scratch);
-                    alpha_lanes(surfaces.column(layer.t), &self.scratch, alpha);
-                    if let Top::Surface(surface) = layer.top {
-                        self.seen_at[surface as usize] = self.seen.len() as u32;
+                    top_albedo(&layer, kept, models, Toward::View, &self.values, &mut self.scratch);
+                    alpha_lanes(models.column(layer.coverage), &self.scratch, alpha);
+                    if let Top::Lobe(model) = layer.top {
+                        self.seen_at[model as usize] = self.seen.len() as u32;
                         self.seen.extend_from_slice(&self.scratch);
                     }
                 }
@@ -188,46 +186,48 @@ impl Layers {
             multiply(Operand::Many(column_or(before, layer.parent, ones)), Operand::Many(alpha), &mut here[..n]);
         }
         if self.list.iter().any(|layer| layer.rule == Layering::Kelemen) {
-            self.prepare_means(surfaces);
+            self.prepare_means(models);
         }
     }
 
-    fn prepare_means(&mut self, surfaces: &Surfaces) {
-        let n = surfaces.lanes;
+    fn prepare_means(&mut self, models: &LobeModels) {
+        let n = models.lanes;
         self.inverse_mean.fill(0.0);
         for index in 0..self.list.len() {
             let layer = self.list[index];
-            if let Top::Surface(surface) = layer.top {
-                let surface = &surfaces.list[surface as usize];
+            if let Top::Lobe(model) = layer.top {
+                let model = &models.list[model as usize];
                 let out = &mut self.inverse_mean[index * n..(index + 1) * n];
-                with_source!(surfaces, surface, |M, source| average_lanes::<M, _>(source, out));
+                if let Some(loops) = model.kind.loops() {
+                    (loops.average)(models.numbers(model), model.choice, out);
+                }
             }
         }
-        for (x, weight) in GAUSS {
+        for (x, weight) in GAUSS_8 {
             for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-                self.add_mean(surfaces, t * t * t, 3.0 * weight * t.powi(5));
+                self.add_mean(models, t * t * t, 3.0 * weight * t.powi(5));
             }
         }
         for index in 0..self.list.len() {
-            let t = surfaces.column(self.list[index].t);
+            let coverage = models.column(self.list[index].coverage);
             let out = &mut self.inverse_mean[index * n..(index + 1) * n];
             for i in 0..n {
-                out[i] = 1.0 / (1.0 - t[i] * out[i]).max(1e-3);
+                out[i] = 1.0 / (1.0 - coverage[i] * out[i]).max(1e-3);
             }
         }
     }
 
     /// Adds one node of the mean albedo of the layers whose top is a tree.
-    fn add_mean(&mut self, surfaces: &Surfaces, cos: f32, weight: f32) {
-        let n = surfaces.lanes;
+    fn add_mean(&mut self, models: &LobeModels, cos: f32, weight: f32) {
+        let n = models.lanes;
         if self.steps.is_empty() {
             return;
         }
-        self.run_steps(surfaces, Side::Fixed(cos));
+        self.run_steps(models, Toward::Fixed(cos));
         for index in 0..self.list.len() {
             let layer = self.list[index];
             if matches!(layer.top, Top::Tree(_)) {
-                top_albedo(&layer, None, surfaces, Side::Fixed(cos), &self.values, &mut self.scratch);
+                top_albedo(&layer, None, models, Toward::Fixed(cos), &self.values, &mut self.scratch);
                 for (sum, a) in self.inverse_mean[index * n..].iter_mut().zip(&self.scratch) {
                     *sum += weight * a;
                 }
@@ -235,29 +235,29 @@ impl Layers {
         }
     }
 
-    /// Computes the scale of every layer for the light directions in the frames and media.
-    pub fn scale(&mut self, surfaces: &Surfaces, media: &Media, ones: &[f32]) {
-        let n = surfaces.lanes;
+    /// Computes the scale of every layer for the light directions in the frames and coats.
+    pub fn scale(&mut self, models: &LobeModels, coats: &Coats, ones: &[f32]) {
+        let n = models.lanes;
         if !self.steps.is_empty() {
-            self.run_steps(surfaces, Side::Light);
+            self.run_steps(models, Toward::Light);
         }
         for (index, layer) in self.list.iter().enumerate() {
-            if let (Top::Boundary, Some(medium)) = (layer.top, media.get(layer.medium)) {
+            if let (Top::Boundary, Some(coat)) = (layer.top, coats.get(layer.coat)) {
                 let (before, here) = self.scales.split_at_mut(index * n);
                 let parent = column_or(before, layer.parent, ones);
                 for i in 0..n {
-                    here[i] = parent[i] * medium.pass_o[i] * medium.pass_i[i];
+                    here[i] = parent[i] * coat.pass_o[i] * coat.pass_i[i];
                 }
                 continue;
             }
             if layer.rule != Layering::View {
                 let kept = kept(&self.curves, self.curves_at[index]);
-                top_albedo(layer, kept, surfaces, Side::Light, &self.values, &mut self.scratch);
+                top_albedo(layer, kept, models, Toward::Light, &self.values, &mut self.scratch);
             }
             let (before, here) = self.scales.split_at_mut(index * n);
             let columns = LayerColumns {
                 top_i: &self.scratch,
-                t: surfaces.column(layer.t),
+                coverage: models.column(layer.coverage),
                 alpha_o: &self.alpha_o[index * n..(index + 1) * n],
                 inverse_mean: &self.inverse_mean[index * n..(index + 1) * n],
                 parent: column_or(before, layer.parent, ones),
@@ -267,8 +267,8 @@ impl Layers {
     }
 
     /// Computes the albedo of every tree that lies on top of something.
-    fn run_steps(&mut self, surfaces: &Surfaces, side: Side) {
-        let n = surfaces.lanes;
+    fn run_steps(&mut self, models: &LobeModels, toward: Toward) {
+        let n = models.lanes;
         self.values.resize(n * self.steps.len(), 0.0);
         for (index, step) in self.steps.iter().enumerate() {
             let (before, here) = self.values.split_at_mut(index * n);
@@ -278,18 +278,18 @@ impl Layers {
                 Step::Zero => here.fill(0.0),
                 Step::Leaves(first, last) => {
                     here.fill(0.0);
-                    for &(surface, t) in &self.leaves[first as usize..last as usize] {
-                        let surface = &surfaces.list[surface as usize];
-                        covering_albedo(surfaces, surface, side, &mut self.scratch);
-                        let t = surfaces.column(t);
+                    for &(model, coverage) in &self.leaves[first as usize..last as usize] {
+                        let model = &models.list[model as usize];
+                        covering_albedo(models, model, toward, &mut self.scratch);
+                        let coverage = models.column(coverage);
                         for i in 0..n {
-                            let there = surfaces.gate(surface, i) > 0.0;
-                            here[i] += if there { t[i] * self.scratch[i] } else { 0.0 };
+                            let there = models.gate(model, i) > 0.0;
+                            here[i] += if there { coverage[i] * self.scratch[i] } else { 0.0 };
                         }
                     }
                 }
                 Step::Scale(weight, child) => {
-                    let (weight, child) = (surfaces.column(weight), value(child));
+                    let (weight, child) = (models.column(weight), value(child));
                     for i in 0..n {
                         // What is too heavy scatters nothing, and takes nothing.
                         let there = weight[i] > 0.0 && usable(weight[i]);
@@ -303,7 +303,7 @@ impl Layers {
                     }
                 }
                 Step::Select(mask, a, b) => {
-                    let (mask, a, b) = (surfaces.column(mask), value(a), value(b));
+                    let (mask, a, b) = (models.column(mask), value(a), value(b));
                     for i in 0..n {
                         here[i] = if mask[i] != 0.0 { a[i] } else { b[i] };
                     }
@@ -322,12 +322,12 @@ impl Layers {
 }
 
 lanes! {
-    /// What a top of coverage `t` lets through.
-    fn alpha_lanes(t: &[f32], top: &[f32], alpha: &mut [f32]) {
+    /// What a top of a coverage lets through.
+    fn alpha_lanes(coverage: &[f32], top: &[f32], alpha: &mut [f32]) {
         let n = alpha.len();
-        let (t, top) = (&t[..n], &top[..n]);
+        let (coverage, top) = (&coverage[..n], &top[..n]);
         for i in 0..n {
-            alpha[i] = (1.0 - t[i] * top[i]).clamp(0.0, 1.0);
+            alpha[i] = (1.0 - coverage[i] * top[i]).clamp(0.0, 1.0);
         }
     }
 }
@@ -343,22 +343,22 @@ fn kept(curves: &[Curves], at: u32) -> Option<&[Curves]> {
     curves.get(at as usize..)
 }
 
-/// The albedo of what a layer consists of, without its t; `kept` are the curves of its sheen, if they were.
+/// The albedo of what a layer consists of, without its coverage; `kept` are the curves of its sheen, if they were.
 fn top_albedo(
     layer: &Layer,
     kept: Option<&[Curves]>,
-    surfaces: &Surfaces,
-    side: Side,
+    models: &LobeModels,
+    toward: Toward,
     values: &[f32],
     out: &mut [f32],
 ) {
-    let n = surfaces.lanes;
+    let n = models.lanes;
     match (layer.top, kept) {
-        (Top::Surface(surface), Some(curves)) => {
-            let cos = cosines(surfaces, &surfaces.list[surface as usize], side);
+        (Top::Lobe(model), Some(curves)) => {
+            let cos = cosines(models, &models.list[model as usize], toward);
             curve_albedo_lanes(curves, &cos, out);
         }
-        (Top::Surface(surface), None) => covering_albedo(surfaces, &surfaces.list[surface as usize], side, out),
+        (Top::Lobe(model), None) => covering_albedo(models, &models.list[model as usize], toward, out),
         (Top::Boundary, _) => out.fill(0.0),
         (Top::Tree(step), _) => {
             for (o, v) in out.iter_mut().zip(&values[step as usize * n..(step as usize + 1) * n]) {
@@ -368,65 +368,60 @@ fn top_albedo(
     }
 }
 
-/// The albedo of a surface that lies on top of something: [`surface_albedo`], from tables where that is an estimate.
-pub fn covering_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &mut [f32]) {
-    if !matches!(surface.kind, Kind::Microfacet { .. }) {
-        return surface_albedo(surfaces, surface, side, out);
-    }
-    let frame = &surfaces.frames()[surface.frame as usize];
+/// The albedo of a model that lies on top of something: [`model_albedo`], from tables where that is an estimate.
+pub fn covering_albedo(models: &LobeModels, model: &LobeModel, toward: Toward, out: &mut [f32]) {
+    let (Some(loops), Some(frame)) = (model.kind.loops().filter(|loops| loops.top), models.frame_of(model)) else {
+        return model_albedo(models, model, toward, out);
+    };
     let fixed;
-    let w = match side {
-        Side::View => &frame.wo,
-        Side::Light => &frame.wi,
-        Side::Fixed(cos) => {
-            fixed = Column3::splat(between(cos), surfaces.lanes);
+    let w = match toward {
+        Toward::View => &frame.wo,
+        Toward::Light => &frame.wi,
+        Toward::Fixed(cos) => {
+            fixed = Column3::splat(between(cos), models.lanes);
             &fixed
         }
     };
-    with_source!(surfaces, surface, |M, source| top_albedo_lanes::<M, _>(source, Triples::of(w), out));
+    (loops.top_albedo)(models.numbers(model), model.choice, Triples::of(w), out);
 }
 
-/// The cosines of a direction to a surface's normal.
-fn cosines<'a>(surfaces: &'a Surfaces, surface: &Surface, side: Side) -> Cow<'a, [f32]> {
-    let frame = &surfaces.frames()[surface.frame as usize];
-    match side {
-        Side::View => Cow::Borrowed(&frame.wo.z),
-        Side::Light => Cow::Borrowed(&frame.wi.z),
-        Side::Fixed(value) => Cow::Owned(vec![value; surfaces.lanes]),
+/// The cosines of a direction to a model's normal.
+fn cosines<'a>(models: &'a LobeModels, model: &LobeModel, toward: Toward) -> Cow<'a, [f32]> {
+    let frame = &models.frames()[model.frame as usize];
+    match toward {
+        Toward::View => Cow::Borrowed(&frame.wo.z),
+        Toward::Light => Cow::Borrowed(&frame.wi.z),
+        Toward::Fixed(value) => Cow::Owned(vec![value; models.lanes]),
     }
 }
 
-/// The albedo of one surface in every lane.
-pub fn surface_albedo(surfaces: &Surfaces, surface: &Surface, side: Side, out: &mut [f32]) {
-    if surface.kind == Kind::Transparent {
-        out.fill(1.0);
-        return;
-    }
-    let cos = cosines(surfaces, surface, side);
-    if let Kind::Reflection(term) | Kind::Refraction(term) = surface.kind {
-        let meet = if matches!(surface.kind, Kind::Reflection(_)) { reflection } else { refraction };
-        for (lane, value) in out.iter_mut().enumerate() {
-            let c = cos[lane].abs().min(1.0);
-            let viewer = Vec3::new(((1.0 - c) * (1.0 + c)).sqrt(), 0.0, c);
-            *value = meet(viewer, term, surfaces.params(surface, lane)).part.max_element();
+/// The albedo of one model in every lane.
+pub fn model_albedo(models: &LobeModels, model: &LobeModel, toward: Toward, out: &mut [f32]) {
+    match model.kind.way() {
+        Way::Straight => out.fill(1.0),
+        Way::One(single) => {
+            let cos = cosines(models, model, toward);
+            for (lane, value) in out.iter_mut().enumerate() {
+                let c = cos[lane].abs().min(1.0);
+                let viewer = Vec3::new(((1.0 - c) * (1.0 + c)).sqrt(), 0.0, c);
+                *value = (single.meet)(viewer, models.params(model, lane)).part.max_element();
+            }
         }
-        return;
+        Way::Many(loops) => {
+            let cos = cosines(models, model, toward);
+            match loops.sheen.filter(|_| models.sheen_albedo != SheenAlbedo::Fit) {
+                Some(soft) => sheen_albedo(models, model, soft, &cos, out),
+                None => (loops.albedo)(models.numbers(model), model.choice, &cos, out),
+            }
+        }
     }
-    let method = surfaces.sheen_albedo;
-    if let Kind::Sheen(term, soft) | Kind::SheenByNormals(term, soft) = surface.kind
-        && term.is_exact()
-        && method != SheenAlbedo::Fit
-    {
-        return sheen_albedo(surfaces, surface, soft, &cos, out);
-    }
-    with_source!(surfaces, surface, |M, source| albedo_lanes::<M, _>(source, &cos, out));
 }
 
 /// The albedo of a sheen by another method than the default.
-fn sheen_albedo(surfaces: &Surfaces, surface: &Surface, soft: bool, cos: &[f32], out: &mut [f32]) {
-    let method = surfaces.sheen_albedo;
-    let curve = |lane| AlbedoCurve::exact(method, soft, surfaces.param(surface, 0, lane));
-    if let Values::Uniform(_) = surface.params {
+fn sheen_albedo(models: &LobeModels, model: &LobeModel, soft: bool, cos: &[f32], out: &mut [f32]) {
+    let method = models.sheen_albedo;
+    let curve = |lane| AlbedoCurve::exact(method, soft, models.param(model, 0, lane));
+    if models.first_param(model).is_none() {
         return match method {
             SheenAlbedo::Short => sheen_albedo_lanes::<SHORT_METHOD>(curve(0), cos, out),
             SheenAlbedo::Fit => sheen_albedo_lanes::<FIT_METHOD>(curve(0), cos, out),

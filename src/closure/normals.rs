@@ -4,7 +4,7 @@
 //! pass that is left out when none needs it, because nearly all normals are of that kind, and two of three divisions and one
 //! of two roots go; instead of one loop that does all of it for every lane.
 
-use super::batch::Triples;
+use super::source::Triples;
 use crate::bsdf::select;
 use crate::lanes;
 use crate::math::frame::Frame;

@@ -2,6 +2,9 @@
 
 use std::ops::{Deref, DerefMut};
 
+/// No index.
+pub const NONE: u32 = u32::MAX;
+
 /// Numbers, or blocks of them, that are taken from the front; what is given back is the end, or all. What is taken holds
 /// anything: clearing it first would cost as much as writing it.
 #[derive(Debug, Default)]

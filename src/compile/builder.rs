@@ -3,9 +3,9 @@
 use super::error::{GroupError, GroupProblem, GroupSubject};
 use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
 use super::shader::Shader;
+use crate::closure::Library;
 use crate::exec::{Group, Locate};
 use crate::ir::lower::{Binding, Layer, LowerOptions, SPANS_PER_LAYER, lower};
-use crate::lang::closures::ClosureTable;
 use crate::lang::types::{Base, Type};
 use crate::optimize::{OptimizeOptions, optimize};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use velour_grammar::{Sources, Span};
 /// Collects layers, parameters and connections, and makes a group of them.
 #[derive(Clone, Debug)]
 pub struct GroupBuilder {
-    closures: Arc<ClosureTable>,
+    closures: Arc<Library>,
     layers: Vec<Layer>,
     sources: Vec<Sources>,
     lower: LowerOptions,
@@ -24,7 +24,7 @@ pub struct GroupBuilder {
 
 impl GroupBuilder {
     /// An empty group.
-    pub fn new(closures: Arc<ClosureTable>) -> Self {
+    pub fn new(closures: Arc<Library>) -> Self {
         GroupBuilder {
             closures,
             layers: Vec::new(),
@@ -99,7 +99,7 @@ impl GroupBuilder {
     fn try_connect(&mut self, from: (&str, &str), to: (&str, &str)) -> Result<(), GroupError> {
         let at = |name: &str| self.layers.iter().position(|layer| layer.name == name);
         let missing = |name: &str| GroupError {
-            problem: GroupProblem::NoLayer { layer: name.to_owned() },
+            problem: Box::new(GroupProblem::NoLayer { layer: name.to_owned() }),
             help: "declare the shader of a layer before connecting it".to_owned(),
             subject: GroupSubject::Layer(name.to_owned()),
         };
@@ -107,7 +107,7 @@ impl GroupBuilder {
         let target = at(to.0).ok_or_else(|| missing(to.0))?;
         if source >= target {
             return Err(GroupError {
-                problem: GroupProblem::LayerOrder { source: from.0.to_owned(), target: to.0.to_owned() },
+                problem: Box::new(GroupProblem::LayerOrder { source: from.0.to_owned(), target: to.0.to_owned() }),
                 help: "declare the layer that is read first".to_owned(),
                 subject: GroupSubject::Layer(from.0.to_owned()),
             });

@@ -3,7 +3,7 @@
 use super::error::CompileError;
 use super::shader::Shader;
 use crate::check::check;
-use crate::lang::closures::ClosureTable;
+use crate::closure::Library;
 use std::path::Path;
 use std::sync::Arc;
 use velour_grammar::{Diagnostics, Options, Sources, parse, parse_bytes};
@@ -20,7 +20,7 @@ pub struct Compiler {
     /// Include folders, macros, files in memory, and the standard header as prelude.
     pub options: Options,
     /// The closures that shaders may call.
-    pub closures: Arc<ClosureTable>,
+    pub closures: Arc<Library>,
 }
 
 /// What checking a text gives.
@@ -49,7 +49,13 @@ impl Compiler {
             prelude: Some((STDOSL_NAME.to_owned(), STDOSL.to_owned())),
             ..Options::default()
         };
-        Compiler { options, closures: Arc::new(ClosureTable::standard()) }
+        Compiler { options, closures: Arc::new(Library::standard()) }
+    }
+
+    /// Uses these closures: velour's own, and those that the host has registered.
+    pub fn with_closures(mut self, closures: impl Into<Arc<Library>>) -> Self {
+        self.closures = closures.into();
+        self
     }
 
     /// Uses another standard header.
@@ -73,7 +79,7 @@ impl Compiler {
         let mut shader = None;
         // After a syntax error the tree lacks pieces, and messages about what is missing would only distract.
         if !diagnostics.has_errors() {
-            let (typed, more) = check(&parsed.file, &self.closures);
+            let (typed, more) = check(&parsed.file, self.closures.table());
             diagnostics.append(more);
             shader = typed.map(|typed| Shader {
                 typed: Arc::new(typed),

@@ -49,7 +49,7 @@ impl std::error::Error for CompileError {
 #[non_exhaustive]
 pub struct GroupError {
     /// What is wrong; its text is one clause.
-    pub problem: GroupProblem,
+    pub problem: Box<GroupProblem>,
     /// The way out.
     pub help: String,
     /// What is wrong, by the names it was given with; a host that knows where those were written can name the place.

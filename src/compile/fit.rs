@@ -141,7 +141,7 @@ pub(super) fn param_error(layer: &Layer, name: &str, problem: GroupProblem) -> G
         format!("its parameters are {}", names.join(", "))
     };
     let subject = GroupSubject::Param { layer: layer.name.clone(), name: name.to_owned() };
-    GroupError { problem, help, subject }
+    GroupError { problem: Box::new(problem), help, subject }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Text to shader group, in one place: parse, check, lower, optimize.
 //!
-//! [`Compiler`] holds what all shaders share: include folders, macros, the standard header, the closure table. It gives
+//! [`Compiler`] holds what all shaders share: include folders, macros, the standard header, the closures. It gives
 //! [`Shader`]s; a [`GroupBuilder`] binds their parameters, joins layers and makes a [`crate::exec::Group`] to shade with.
 
 mod builder;

@@ -1,7 +1,7 @@
 //! A compiled shader: the typed shader, the text it came from, and the closures it may call.
 
 use crate::check::typed;
-use crate::lang::closures::ClosureTable;
+use crate::closure::Library;
 use std::sync::Arc;
 use velour_grammar::Sources;
 
@@ -12,7 +12,7 @@ pub struct Shader {
     pub typed: Arc<typed::Shader>,
     /// Where its text came from.
     pub sources: Sources,
-    pub(super) closures: Arc<ClosureTable>,
+    pub(super) closures: Arc<Library>,
 }
 
 impl Shader {

@@ -41,13 +41,15 @@ impl Run<'_> {
             ParamKind::Int => Param::Int(self.ints(own[0])),
             ParamKind::String => Param::String(self.ints(own[0])),
             ParamKind::Closure => Param::Closure(self.closure(own[0])),
-            _ => Param::Triple([self.floats(own[0]), self.floats(own[1]), self.floats(own[2])]),
+            ParamKind::Color | ParamKind::Vector | ParamKind::Normal => {
+                Param::Triple([self.floats(own[0]), self.floats(own[1]), self.floats(own[2])])
+            }
         }
     }
 
     pub(super) fn leaf(&mut self, dst: Reg, closure: ClosureId, params: &[Reg], keywords: &[(u32, Vec<Reg>)]) {
         let group = self.group;
-        let spec = group.table.get(closure);
+        let spec = group.library.get(closure);
         let mut rest = params;
         self.s.params.clear();
         self.s.keywords.clear();

@@ -1,8 +1,9 @@
 //! A compiled shader group: what a host makes once and shades with for ever.
 
+use crate::closure::Library;
 use crate::ir::op::{Input, Routine};
 use crate::ir::program::*;
-use crate::lang::closures::{ClosureId, ClosureTable, Model};
+use crate::lang::closures::{ClosureId, ClosureSpec, ClosureTable};
 use crate::lang::globals::Global;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -19,12 +20,11 @@ pub type Locate = Arc<dyn Fn(Span) -> String + Send + Sync>;
 pub struct Group {
     pub(super) id: u64,
     pub(super) program: Arc<Program>,
-    pub(super) table: Arc<ClosureTable>,
+    pub(super) library: Arc<Library>,
     pub(super) locate: Locate,
     inputs: Arc<Vec<(Reg, Input)>>,
     /// See [`Group::spent`].
     spent: Arc<Vec<bool>>,
-    models: Arc<Vec<Model>>,
     /// The closures that can occur.
     closures: Arc<Vec<ClosureId>>,
 }
@@ -37,19 +37,15 @@ impl std::fmt::Debug for Group {
 
 impl Group {
     /// A group of an optimised program.
-    pub fn new(program: Program, table: Arc<ClosureTable>, locate: Locate) -> Self {
+    pub fn new(program: Program, library: Arc<Library>, locate: Locate) -> Self {
         let mut read = vec![0u32; program.regs.len()];
-        let (mut models, mut closures) = (Vec::new(), Vec::new());
+        let mut closures = Vec::new();
         visit_instrs(&program.body, &mut |instr| {
             instr.reads(|reg| read[reg.0 as usize] += 1);
-            if let Instr::Leaf { closure, .. } = instr {
-                let model = table.get(*closure).model;
-                if !models.contains(&model) {
-                    models.push(model);
-                }
-                if !closures.contains(closure) {
-                    closures.push(*closure);
-                }
+            if let Instr::Leaf { closure, .. } = instr
+                && !closures.contains(closure)
+            {
+                closures.push(*closure);
             }
         });
         mark_conditions(&program.body, &mut read);
@@ -69,11 +65,10 @@ impl Group {
         Group {
             id,
             program: Arc::new(program),
-            table,
+            library,
             locate,
             inputs,
             spent: Arc::new(spent),
-            models: Arc::new(models),
             closures: Arc::new(closures),
         }
     }
@@ -84,8 +79,13 @@ impl Group {
     }
 
     /// The closures it was compiled with.
+    pub fn library(&self) -> &Library {
+        &self.library
+    }
+
+    /// Their declarations.
     pub fn table(&self) -> &ClosureTable {
-        &self.table
+        self.library.table()
     }
 
     /// The inputs it reads and the registers they go to.
@@ -99,14 +99,14 @@ impl Group {
         self.spent[reg.0 as usize]
     }
 
-    /// The scattering models that can occur.
-    pub fn models(&self) -> &[Model] {
-        &self.models
+    /// The closures that can occur, each once, in the order of the program.
+    pub fn closures(&self) -> impl Iterator<Item = &ClosureSpec> {
+        self.closures.iter().map(|&id| self.library.get(id))
     }
 
     /// Can a closure occur that nests others, so that what it lets through depends on the direction?
     pub fn nests(&self) -> bool {
-        self.closures.iter().any(|&id| self.table.get(id).nests())
+        self.closures().any(ClosureSpec::nests)
     }
 
     /// Does it read a shader global?
@@ -122,14 +122,17 @@ impl Group {
 
     /// Can it emit light?
     pub fn can_emit(&self) -> bool {
-        self.models.iter().any(|model| matches!(model, Model::Emission | Model::Background))
+        self.closures().any(|spec| spec.emits)
     }
 
     /// Can it scatter light?
     pub fn can_scatter(&self) -> bool {
-        let other =
-            |model: &Model| !matches!(model, Model::Emission | Model::Background | Model::Holdout | Model::Debug);
-        self.models.iter().any(other)
+        self.closures().any(|spec| spec.scatters)
+    }
+
+    /// Can it be a hole in the alpha channel?
+    pub fn can_hold_out(&self) -> bool {
+        self.closures().any(|spec| spec.holds_out)
     }
 
     /// Does what it computes differ from point to point of one object?

@@ -37,7 +37,7 @@ impl Run<'_> {
                     Value::Strings(own.iter().map(|&reg| Symbol(pick(self.regs.i(reg))).text()).collect())
                 }
                 TextArg::Closure => {
-                    Value::Closure(closure_text(&self.group.table, self.tree, self.closure(own[0]), lane))
+                    Value::Closure(closure_text(self.group.table(), self.tree, self.closure(own[0]), lane))
                 }
             });
         }

@@ -2,6 +2,7 @@
 
 pub mod builtins;
 pub mod closures;
+pub mod describe;
 pub mod globals;
 pub mod path;
 pub mod symbols;

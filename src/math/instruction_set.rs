@@ -127,7 +127,10 @@ macro_rules! each_instruction_set {
                 $crate::math::instruction_set::InstructionSet::Avx512 => unsafe { avx512 $($given)* ($($arg),*) },
                 #[cfg(target_arch = "x86_64")]
                 $crate::math::instruction_set::InstructionSet::Avx2 => unsafe { avx2 $($given)* ($($arg),*) },
-                _ => baseline $($given)* ($($arg),*),
+                #[cfg(not(target_arch = "x86_64"))]
+                $crate::math::instruction_set::InstructionSet::Avx512
+                | $crate::math::instruction_set::InstructionSet::Avx2 => baseline $($given)* ($($arg),*),
+                $crate::math::instruction_set::InstructionSet::Baseline => baseline $($given)* ($($arg),*),
             }
         }
     };

@@ -5,5 +5,6 @@ pub mod elementary;
 pub mod frame;
 pub mod instruction_set;
 pub mod noise;
+pub mod polynomial;
 pub mod quadrature;
 pub mod warp;

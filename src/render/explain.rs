@@ -16,7 +16,7 @@ use super::settings::{LightStrategy, Settings};
 use super::shading::Shading;
 use crate::closure::settings::SheenAlbedo;
 use crate::exec::{Group, MAX_LANES, Points};
-use crate::lang::closures::Model;
+use crate::lang::closures::TopAlbedo;
 use crate::lang::globals::GLOBALS;
 use crate::math::columns::Column3;
 use crate::scene::{Geometry, Primitive, Scene, Shape};
@@ -100,35 +100,37 @@ impl MaterialNeeds {
             globals: named(&|g| group.reads(g)),
             derivatives: named(&|g| group.reads_derivative(g)),
             instructions,
-            albedo: albedos(group.models(), settings.closure.sheen_albedo),
+            albedo: albedos(group, settings.closure.sheen_albedo),
         }
     }
 }
 
-/// The albedo evaluators that a group's layers may call for.
-fn albedos(models: &[Model], method: SheenAlbedo) -> Vec<&'static str> {
+/// The albedo evaluators that a group's layers may call for: those of closures that cover what they nest, and of all that can lie
+/// in the top of one that nests a top.
+fn albedos(group: &Group, method: SheenAlbedo) -> Vec<&'static str> {
+    let any_top = group.closures().any(|spec| spec.nests_a_top());
+    let needed = |by: TopAlbedo| group.closures().any(|spec| spec.top_albedo == by && (any_top || spec.nests()));
     let mut out = Vec::new();
-    let layered = models.iter().any(|m| matches!(m, Model::Layer | Model::Coat));
-    if models.contains(&Model::Sheen) || layered && models.contains(&Model::SheenBsdf) {
-        out.push(match method {
-            SheenAlbedo::Short => "short polynomial of the sheen's albedo",
-            SheenAlbedo::Fit => "polynomial of the sheen's albedo",
-            SheenAlbedo::Long => "long polynomial of the sheen's albedo",
-        });
-    }
-    if layered && models.iter().any(is_facets) {
-        out.push("table of the rough facets' albedo");
-    }
-    if models.contains(&Model::Coat) {
-        out.push("Fresnel's term of the coat");
+    for by in [TopAlbedo::Formula, TopAlbedo::Sheen, TopAlbedo::Facets, TopAlbedo::Boundary] {
+        let words = match by {
+            TopAlbedo::Formula => continue,
+            TopAlbedo::Sheen => match method {
+                SheenAlbedo::Short => "short polynomial of the sheen's albedo",
+                SheenAlbedo::Fit => "polynomial of the sheen's albedo",
+                SheenAlbedo::Long => "long polynomial of the sheen's albedo",
+            },
+            TopAlbedo::Facets => FACET_TABLE,
+            TopAlbedo::Boundary => "Fresnel's term of the coat",
+        };
+        if needed(by) {
+            out.push(words);
+        }
     }
     out
 }
 
-fn is_facets(model: &Model) -> bool {
-    use Model::*;
-    matches!(model, Microfacet | DielectricBsdf | ConductorBsdf | GeneralizedSchlickBsdf)
-}
+/// How a plan speaks of the table of facets.
+const FACET_TABLE: &str = "table of the rough facets' albedo";
 
 /// Nanoseconds a lane of `run`, which works on a full batch: the best of several rounds.
 fn time(mut run: impl FnMut()) -> f64 {
@@ -234,7 +236,7 @@ fn closure_savings(scene: &Scene, materials: &[MaterialNeeds], savings: &mut Vec
         what: format!("{unused} of {} closures", names.len()),
         cost: "none: what no shader names is never called".into(),
     });
-    if !materials.iter().any(|m| m.albedo.contains(&"table of the rough facets' albedo")) {
+    if !materials.iter().any(|m| m.albedo.contains(&FACET_TABLE)) {
         savings.push(Saving {
             what: "tables of the rough facets' albedo".into(),
             cost: "41 to 78 ms a distribution, once, and a look-up a direction".into(),

@@ -2,7 +2,6 @@
 
 use super::settings::{LightStrategy, Settings};
 use crate::exec::Group;
-use crate::lang::closures::Model;
 use crate::lang::globals::Global;
 use crate::scene::Scene;
 use std::fmt;
@@ -88,7 +87,7 @@ impl Plan {
             .map(|m| MaterialPlan {
                 emits: m.surface.can_emit(),
                 scatters: m.surface.can_scatter(),
-                holds_out: m.surface.models().contains(&Model::Holdout),
+                holds_out: m.surface.can_hold_out(),
                 needs: Needs::of(&m.surface),
             })
             .collect();

@@ -70,11 +70,11 @@ impl Shading {
         }
         if self.failed {
             self.nothing.clear(self.points.len);
-            self.lobes.flatten(group.table(), &self.nothing, &self.viewer, &self.points.ng);
+            self.lobes.flatten(group.library(), &self.nothing, &self.viewer, &self.points.ng);
             return;
         }
         let tree = self.machine.shade(group, &self.points);
-        self.lobes.flatten(group.table(), tree, &self.viewer, &self.points.ng);
+        self.lobes.flatten(group.library(), tree, &self.viewer, &self.points.ng);
         let mut news = Vec::new();
         if !self.lobes.dropped().is_empty() {
             report_dropped(group, tree, &self.lobes, &mut news);

@@ -80,8 +80,7 @@ impl Camera {
             Some(CameraFlaw::Eye)
         } else if !self.direction.is_normalized() {
             Some(CameraFlaw::Direction)
-        // Written so that a NaN is a flaw.
-        } else if !(self.direction.cross(self.up).length() > 1e-6 * self.up.length()) {
+        } else if !self.up.is_finite() || self.direction.cross(self.up).length() <= 1e-6 * self.up.length() {
             Some(CameraFlaw::Up)
         } else if !(self.fov > 0.0 && self.fov < 180.0) {
             Some(CameraFlaw::Angle)

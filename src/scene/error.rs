@@ -29,7 +29,7 @@ pub struct SceneError {
     /// Where, when a file is to blame.
     pub place: Option<Place>,
     /// What is wrong; its text is one clause.
-    pub problem: SceneProblem,
+    pub problem: Box<SceneProblem>,
     /// One clause that says what to do, when it is known.
     pub help: Option<String>,
 }
@@ -337,12 +337,12 @@ impl fmt::Display for MeshFlaw {
 impl SceneError {
     /// An error at a place.
     pub fn at(place: Place, problem: SceneProblem) -> Self {
-        SceneError { place: Some(place), problem, help: None }
+        SceneError { place: Some(place), problem: Box::new(problem), help: None }
     }
 
     /// An error that no file is to blame for.
     pub fn nowhere(problem: SceneProblem) -> Self {
-        SceneError { place: None, problem, help: None }
+        SceneError { place: None, problem: Box::new(problem), help: None }
     }
 
     /// The same error with a line of help.
@@ -373,7 +373,7 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match &self.problem {
+        match &*self.problem {
             SceneProblem::Unreadable { error, .. } => Some(error.as_ref()),
             SceneProblem::Shader { error, .. } => Some(error.as_ref()),
             SceneProblem::Group(error) => Some(error),

@@ -35,7 +35,7 @@ pub fn open_matches(tokens: &[Token], enums: &BTreeSet<String>) -> Vec<(usize, B
         }
         let patterns = patterns(tokens, open);
         let wild = |pattern: &&[Token]| pattern[0].is("_") && pattern.get(1).is_none_or(|t| t.is("if"));
-        if !patterns.iter().any(|pattern| wild(&pattern)) {
+        if !patterns.iter().any(wild) {
             continue;
         }
         let named = patterns.iter().flat_map(|pattern| pattern.windows(2));

@@ -5,8 +5,8 @@ use std::time::Instant;
 use velour::bsdf::fresnel::{Conductor, Dielectric, Fresnel, Schlick};
 use velour::bsdf::microfacet::albedo::FacetTable;
 use velour::bsdf::microfacet::distribution::{Distribution, Widths};
-use velour::bsdf::microfacet::{Beckmann, Blinn, Geometry, Ggx, Microfacet, Sampling, method};
-use velour::bsdf::{Scatter, params};
+use velour::bsdf::microfacet::{Beckmann, Blinn, Geometry, Ggx, Method, Microfacet, Sampling};
+use velour::bsdf::{Choice, Scatter, params};
 
 /// Slopes of facets by rank, from each distribution's own integral.
 trait Facets: Distribution {
@@ -190,8 +190,8 @@ fn tops_know_their_shadowing() {
         let mut worst = 0.0f64;
         for alpha in [0.03f32, 0.1, 0.3, 0.6, 1.0] {
             for (eta, cos) in [0.0, 1.5].into_iter().flat_map(|eta| [0.01, 0.05, 0.2, 0.5, 0.9].map(|cos| (eta, cos))) {
-                let p = params([alpha, alpha, eta, method(geometry, Sampling::Visible)]);
-                let model = Microfacet::<D, Dielectric, false>::prepare(p);
+                let choice = Method { geometry, sampling: Sampling::Visible }.into();
+                let model = Microfacet::<D, Dielectric, false>::prepare(params([alpha, alpha, eta])).choose(choice);
                 let wo = crate::narrow(crate::direction(cos, 0.2));
                 let stated = f64::from(model.top_albedo(wo));
                 worst = worst.max((stated - mean_of(&model, wo, 160).x).abs());
@@ -238,25 +238,25 @@ fn both<A: Scatter, B: Scatter>(up: A, down: B, wo: Vec3) -> f64 {
 
 /// The largest sum of both halves, and the largest error of what the transmitting half says it takes as a layer's top.
 fn halves<D: Distribution>(geometry: Geometry, most: &mut f64, off: &mut f64) {
-    let m = method(geometry, Sampling::Visible);
+    let m = Choice::from(Method { geometry, sampling: Sampling::Visible });
     for (x, y) in [(0.001, 0.001), (0.02, 0.02), (0.1, 0.4), (0.3, 0.3), (1.0, 0.2), (1.0, 1.0)] {
         for cos in [1e-4, 0.03, 0.3, 1.0] {
             let wo = crate::narrow(crate::direction(cos, 0.5));
             for eta in [1.05, 1.5, 2.5, 1.0 / 1.5] {
-                let p = params([x, y, eta, m]);
-                let through = Microfacet::<D, Dielectric, true>::prepare(p);
-                *most = most.max(both(Microfacet::<D, Dielectric, false>::prepare(p), through, wo));
+                let p = params([x, y, eta]);
+                let through = Microfacet::<D, Dielectric, true>::prepare(p).choose(m);
+                *most = most.max(both(Microfacet::<D, Dielectric, false>::prepare(p).choose(m), through, wo));
                 if eta > 1.0 && x == y && geometry == Geometry::Smith {
                     let passed = mean(&through, wo);
                     *off = off.max((f64::from(through.top_albedo(wo)) - passed.x).abs());
                 }
             }
-            let p = params([x, y, 0.04, 0.3, 0.0, 1.0, 1.0, 0.5, 5.0, 2.0, m]);
+            let p = params([x, y, 0.04, 0.3, 0.0, 1.0, 1.0, 0.5, 5.0, 2.0]);
             let (up, down) = (Microfacet::<D, Schlick, false>::prepare(p), Microfacet::<D, Schlick, true>::prepare(p));
-            *most = most.max(both(up, down, wo));
-            let p = params([x, y, 0.0, 0.1, 1.0, 3.0, 9.0, 30.0, m]);
+            *most = most.max(both(up.choose(m), down.choose(m), wo));
+            let p = params([x, y, 0.0, 0.1, 1.0, 3.0, 9.0, 30.0]);
             let none = Microfacet::<D, Dielectric, true>::prepare(params([x, y, 0.0]));
-            *most = most.max(both(Microfacet::<D, Conductor, false>::prepare(p), none, wo));
+            *most = most.max(both(Microfacet::<D, Conductor, false>::prepare(p).choose(m), none, wo));
         }
     }
 }

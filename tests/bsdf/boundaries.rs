@@ -9,8 +9,7 @@ use velour::bsdf::microfacet::{Ggx, Microfacet};
 use velour::bsdf::{Scatter, params};
 use velour::closure::settings::Settings;
 use velour::closure::tree::{Floats, Ints, NodeId, Param, Tree};
-use velour::closure::{Evaluation, Lobes, Samples, event};
-use velour::lang::closures::ClosureTable;
+use velour::closure::{Evaluation, Library, Lobes, Samples, event};
 use velour::lang::symbols::Symbol;
 use velour::math::columns::Column3;
 use velour::measure::furnace::{hemisphere, integrate, sample_mean};
@@ -26,7 +25,7 @@ fn grey(x: f32) -> Param {
 
 /// `dielectric_bsdf` of gray tints.
 fn glass(tree: &mut Tree, tints: [f32; 2], alpha: f32, ior: f32, keywords: &[(u32, Param)]) -> NodeId {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let [reflection, transmission] = tints.map(grey);
     let params =
         [up(), triple(1.0, 0.0, 0.0), reflection, transmission, float(alpha), float(alpha), float(ior), word("ggx")];
@@ -36,7 +35,7 @@ fn glass(tree: &mut Tree, tints: [f32; 2], alpha: f32, ior: f32, keywords: &[(u3
 const COPPER: [[f32; 3]; 2] = [[0.23, 0.92, 1.1], [3.4, 2.6, 2.4]];
 
 fn copper(tree: &mut Tree, alpha: f32) -> NodeId {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let [eta, k] = COPPER.map(|c| triple(c[0], c[1], c[2]));
     let params = [up(), triple(1.0, 0.0, 0.0), float(alpha), float(alpha), eta, k, word("ggx")];
     tree.leaf(id(&table, "conductor_bsdf"), &params, &[])
@@ -44,7 +43,7 @@ fn copper(tree: &mut Tree, alpha: f32) -> NodeId {
 
 /// `generalized_schlick_bsdf` with a colored f0 of mean 0.04.
 fn glaze(tree: &mut Tree, transmission: f32, alpha: f32) -> NodeId {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let params = [
         up(),
         triple(1.0, 0.0, 0.0),
@@ -129,7 +128,7 @@ fn both_halves_are_picked_as_often_as_they_should() {
 
 #[test]
 fn an_opaque_glaze_looks_alike_from_both_sides() {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     for (transmission, alike) in [(0.0, true), (1.0, false)] {
         let mut tree = Tree::default();
         tree.clear(1);
@@ -151,7 +150,7 @@ fn an_opaque_glaze_looks_alike_from_both_sides() {
 #[test]
 fn keywords_choose_shadowing_and_sampling() {
     let (geometry, sampling) = (0, 1);
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let spec = table.get(id(&table, "dielectric_bsdf"));
     assert_eq!((spec.keywords[0].name, spec.keywords[1].name), ("geometry", "sampling"));
     let wi = narrow(direction(0.1, 2.0));
@@ -171,7 +170,7 @@ fn keywords_choose_shadowing_and_sampling() {
 
 #[test]
 fn lanes_of_one_batch_may_differ_in_everything() {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let n = 64;
     // Distribution, shadowing, sampling, transmission tint, width and index differ by the lane.
     let choices = |lane: usize| {
@@ -254,7 +253,7 @@ fn parameters_that_are_no_numbers_drop_the_closure() {
 /// What white under a coat sends back: never more than all light, and near the coat's own share plus what passes twice.
 #[test]
 fn a_coat_takes_from_white_what_it_reflects() {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     for alpha in [0.2, 0.5, 1.0] {
         for cos in [0.05, 0.2, 0.6, 1.0] {
             for k in 0..3 {

@@ -19,7 +19,7 @@ fn lobes(expression: &str, cos: f64) -> Lobes {
     let points = Points::single(wo);
     let mut machine = Machine::new();
     let mut lobes = Lobes::new(Settings::default());
-    lobes.flatten(group.table(), machine.shade(&group, &points), &Column3::splat(wo, 1), &points.ng);
+    lobes.flatten(group.library(), machine.shade(&group, &points), &Column3::splat(wo, 1), &points.ng);
     assert!(lobes.dropped().is_empty(), "{:?}", lobes.dropped());
     lobes
 }
@@ -163,7 +163,7 @@ fn one_leaf_serves_inside_and_outside_of_a_coat() {
     let wo = narrow(direction(0.7, 0.3));
     let (points, mut machine) = (Points::single(wo), Machine::new());
     let mut shared = Lobes::new(Settings::default());
-    shared.flatten(group.table(), machine.shade(&group, &points), &Column3::splat(wo, 1), &points.ng);
+    shared.flatten(group.library(), machine.shade(&group, &points), &Column3::splat(wo, 1), &points.ng);
     assert!((f_cos(&mut shared, wi) - parts).abs().max_element() < 1e-6);
 }
 
@@ -225,7 +225,7 @@ fn a_broken_coat_is_dropped_alone() {
         let group = compile(text).expect("a shader").group().param(parameter, &values).build().expect("a group");
         let (points, mut machine) = (Points::single(Vec3::Z), Machine::new());
         let mut broken = Lobes::new(Settings::default());
-        broken.flatten(group.table(), machine.shade(&group, &points), &Column3::splat(Vec3::Z, 1), &points.ng);
+        broken.flatten(group.library(), machine.shade(&group, &points), &Column3::splat(Vec3::Z, 1), &points.ng);
         assert_eq!(broken.dropped().first().map(|d| d.closure), Some("coat"), "{parameter}");
         let f = f_cos(&mut broken, Vec3::Z).x;
         assert!((f - std::f32::consts::FRAC_1_PI).abs() < 1e-5, "{parameter}: {f}");
@@ -254,7 +254,7 @@ fn lanes_know_nothing_of_each_other_under_coats() {
         let (mut machine, mut lobes, mut out) =
             (Machine::new(), Lobes::new(Settings::default()), Evaluation::default());
         let wo = Column3::splat(wo, us.len());
-        lobes.flatten(group.table(), machine.shade(&group, &points), &wo, &points.ng);
+        lobes.flatten(group.library(), machine.shade(&group, &points), &wo, &points.ng);
         lobes.evaluate(&Column3::splat(wi, us.len()), &mut out);
         (0..us.len()).map(|lane| (out.f_cos.get(lane), out.pdf[lane])).collect::<Vec<_>>()
     };

@@ -1,19 +1,19 @@
 //! The long albedo polynomials made anew by quadrature, and the shadowing series by its closed form.
 
-use velour::bsdf::sheen::albedo::{CURVE, MIN_FITTED_ROUGHNESS, SURFACE_COLUMNS, Surface};
+use velour::bsdf::sheen::albedo::MIN_FITTED_ROUGHNESS;
 use velour::bsdf::sheen::fits::{
-    ALBEDO_ASHIKHMIN, ALBEDO_EXACT_LONG, ALBEDO_EXACT_SOFT_LONG, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT, SERIES,
-    SERIES_COLUMNS, SHADOWING_SERIES,
+    ALBEDO_ASHIKHMIN, ALBEDO_EXACT_LONG, ALBEDO_EXACT_SOFT_LONG, ALBEDO_PUBLISHED, ALBEDO_PUBLISHED_SOFT, CURVE,
+    CURVE_COLUMNS, CurveFit, SERIES, SERIES_COLUMNS, SHADOWING_SERIES,
 };
 use velour::bsdf::sheen::reference::{self, Model};
 
 /// Interpolates the albedo, integrated numerically, at the Chebyshev nodes of both axes.
-fn fit(model: Model, soft: bool, steps: usize) -> Surface {
+fn fit(model: Model, soft: bool, steps: usize) -> CurveFit {
     let node = |k: usize, n: usize| (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).cos();
-    let rows: [[f64; SURFACE_COLUMNS]; CURVE] = std::array::from_fn(|i| {
+    let rows: [[f64; CURVE_COLUMNS]; CURVE] = std::array::from_fn(|i| {
         let t = MIN_T + (1.0 - MIN_T) * 0.5 * (1.0 + node(i, CURVE));
         std::array::from_fn(|j| {
-            let s = 0.5 * (1.0 + node(j, SURFACE_COLUMNS));
+            let s = 0.5 * (1.0 + node(j, CURVE_COLUMNS));
             let r = ((1.0 - s) * f64::from(MIN_FITTED_ROUGHNESS).ln()).exp();
             reference::albedo(model, soft, t * t * t, r, steps)
         })
@@ -25,10 +25,10 @@ fn fit(model: Model, soft: bool, steps: usize) -> Surface {
             let mut sum = 0.0;
             for (i, row) in rows.iter().enumerate() {
                 for (j, value) in row.iter().enumerate() {
-                    sum += value * along(a, i, CURVE) * along(b, j, SURFACE_COLUMNS);
+                    sum += value * along(a, i, CURVE) * along(b, j, CURVE_COLUMNS);
                 }
             }
-            (sum * share(a, CURVE) * share(b, SURFACE_COLUMNS)) as f32
+            (sum * share(a, CURVE) * share(b, CURVE_COLUMNS)) as f32
         })
     })
 }

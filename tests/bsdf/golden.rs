@@ -53,7 +53,7 @@ fn hold(worst: f64, bar: f64, what: &str) {
 }
 
 fn sheen<const S: u8, const SOFT: bool>(r: f64) -> Sheen<S, SOFT> {
-    Sheen::prepare(params([r as f32, 0.1]))
+    Sheen::prepare(params([r as f32]))
 }
 
 #[test]

@@ -5,14 +5,14 @@ use glam::Vec3;
 use serde_json::Value;
 use velour::closure::settings::Shadowing;
 use velour::closure::tree::{Floats, NodeId, Param, Tree};
-use velour::closure::{Layering, Lobes, Settings};
-use velour::lang::closures::{ClosureId, ClosureTable};
+use velour::closure::{Layering, Library, Lobes, Settings};
+use velour::lang::closures::ClosureId;
 use velour::math::columns::Column3;
 use velour::measure::furnace::{hemisphere, integrate, sample_mean};
 use velour::measure::statistics::Random;
 
 /// The closure of a name.
-pub fn id(table: &ClosureTable, name: &'static str) -> ClosureId {
+pub fn id(table: &Library, name: &'static str) -> ClosureId {
     table.named(name).next().expect("a closure of this name").0
 }
 
@@ -32,14 +32,14 @@ pub fn float(value: f32) -> Param {
 }
 
 /// `sheen(diffuse(N), N, tint, r)`.
-pub fn cloth(table: &ClosureTable, tree: &mut Tree, tint: f32, r: f32) -> NodeId {
+pub fn cloth(table: &Library, tree: &mut Tree, tint: f32, r: f32) -> NodeId {
     let base = tree.leaf(id(table, "diffuse"), &[up()], &[]);
     tree.leaf(id(table, "sheen"), &[Param::Closure(Some(base)), up(), triple(tint, tint, tint), float(r)], &[])
 }
 
 /// Lobes of one lane seen at a cosine.
 pub fn flatten(settings: Settings, tree: &Tree, cos: f64) -> Lobes {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let mut lobes = Lobes::new(settings);
     let wo = Column3::splat(narrow(direction(cos, 0.3)), tree.lanes);
     lobes.flatten(&table, tree, &wo, &Column3::splat(Vec3::Z, tree.lanes));
@@ -48,7 +48,7 @@ pub fn flatten(settings: Settings, tree: &Tree, cos: f64) -> Lobes {
 
 /// Total of `sheen over white Lambert` toward a cosine, by quadrature.
 fn total(settings: Settings, r: f64, cos: f64) -> f64 {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let mut tree = Tree::default();
     tree.clear(1);
     tree.root = Some(cloth(&table, &mut tree, 1.0, r as f32));
@@ -108,7 +108,7 @@ fn golden_totals() {
 
 #[test]
 fn sampling_agrees_with_quadrature() {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let mut tree = Tree::default();
     for (k, r) in [0.06f32, 0.25, 1.0].into_iter().enumerate() {
         tree.clear(128);
@@ -128,7 +128,7 @@ fn sampling_agrees_with_quadrature() {
 
 #[test]
 fn a_lobe_two_percent_too_bright_is_rejected() {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let mut tree = Tree::default();
     tree.clear(1);
     let cloth = cloth(&table, &mut tree, 1.0, 0.25);
@@ -139,7 +139,7 @@ fn a_lobe_two_percent_too_bright_is_rejected() {
 }
 
 /// A rough boundary that both reflects and refracts, for 64 lanes.
-fn glass(table: &ClosureTable, distribution: &str, x: f32, eta: f32) -> Tree {
+fn glass(table: &Library, distribution: &str, x: f32, eta: f32) -> Tree {
     let mut tree = Tree::default();
     tree.clear(64);
     let name = velour::lang::symbols::Symbol::new(distribution).0;
@@ -159,7 +159,7 @@ fn glass(table: &ClosureTable, distribution: &str, x: f32, eta: f32) -> Tree {
 #[test]
 fn rough_glass_samples_what_it_is() {
     // From inside, a reflection that falls below the horizon must not be weighed as a refraction.
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     for distribution in ["ggx", "beckmann"] {
         for (eta, cos) in [(1.5f32, 0.3f64), (1.5, 0.8), (1.0 / 1.5, 0.5), (1.0 / 1.5, 0.7), (1.0 / 1.5, 0.9)] {
             let mut lobes = flatten(Settings::default(), &glass(&table, distribution, 0.3, eta), cos);
@@ -180,7 +180,7 @@ fn rough_glass_samples_what_it_is() {
 fn glass_is_white() {
     // Smooth glass reflects or refracts everything; rough glass loses only what is scattered twice, which
     // is more from inside, close to the critical angle.
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     for (x, outside, inside) in [(0.0f32, 0.9999, 0.9999), (0.2, 0.97, 0.9), (0.5, 0.85, 0.7)] {
         for distribution in ["ggx", "beckmann"] {
             for eta in [1.5f32, 1.0 / 1.5] {

@@ -6,8 +6,8 @@ use serde_json::Value;
 use std::sync::LazyLock;
 use velour::bsdf::fresnel::{Conductor, Dielectric, Fresnel, Schlick, conductor, dielectric, eta_of_reflectance};
 use velour::bsdf::microfacet::distribution::{Distribution, Widths};
-use velour::bsdf::microfacet::{Beckmann, Blinn, Geometry, Ggx, Microfacet, Sampling, method};
-use velour::bsdf::{Params, Scatter, Side, params};
+use velour::bsdf::microfacet::{Beckmann, Blinn, Geometry, Ggx, Method, Microfacet, Sampling};
+use velour::bsdf::{Choice, Params, Scatter, Side, params};
 use velour::math::quadrature::{Node, gauss_legendre};
 use velour::measure::statistics::Random;
 
@@ -151,7 +151,7 @@ fn distributions_have_a_projected_area_of_one() {
 fn grooves_are_as_tabulated() {
     let mut worst = 0.0f64;
     let model =
-        |g| Microfacet::<Ggx, Dielectric, false>::prepare(params([0.5, 0.5, 0.0, method(g, Sampling::Visible)]));
+        |g| Microfacet::<Ggx, Dielectric, false>::prepare(params([0.5, 0.5, 0.0])).choose(method(g, Sampling::Visible));
     for row in rows("vgroove_g") {
         let wo = narrow(direction(row[0].to_radians().cos(), 0.0));
         let wi = narrow(direction(row[1].to_radians().cos(), row[2].to_radians()));
@@ -163,14 +163,19 @@ fn grooves_are_as_tabulated() {
     hold(worst, 2e-5, "V-groove G");
 }
 
+/// The choice of a shadowing term and a way of sampling.
+fn method(geometry: Geometry, sampling: Sampling) -> Choice {
+    Method { geometry, sampling }.into()
+}
+
 /// Every model with every method at a few widths.
 fn each_model(mut run: impl FnMut(&str, &dyn Fn(Vec3, Vec3) -> (Vec3, f32), &dyn Fn(Vec3, Vec3) -> Vec3, Side)) {
     fn one<M: Scatter>(
-        p: Params,
+        (p, m): (Params, Choice),
         name: &str,
         run: &mut impl FnMut(&str, &dyn Fn(Vec3, Vec3) -> (Vec3, f32), &dyn Fn(Vec3, Vec3) -> Vec3, Side),
     ) {
-        let model = M::prepare(p);
+        let model = M::prepare(p).choose(m);
         run(name, &|o, i| (model.colored(o, i), model.eval(o, i).pdf), &|o, xi| model.sample(o, xi), M::SIDE);
     }
     macro_rules! distributions {
@@ -180,13 +185,13 @@ fn each_model(mut run: impl FnMut(&str, &dyn Fn(Vec3, Vec3) -> (Vec3, f32), &dyn
                     let m = method(g, s);
                     let name = |f: &str| format!("{} {f} {x} {y} {g:?} {s:?}", stringify!($d));
                     for eta in [1.5, 1.0 / 1.5] {
-                        let p = params([x, y, eta, m]);
+                        let p = (params([x, y, eta]), m);
                         one::<Microfacet<$d, Dielectric, false>>(p, &name("dielectric, reflecting"), &mut run);
                         one::<Microfacet<$d, Dielectric, true>>(p, &name("dielectric, refracting"), &mut run);
                     }
-                    let metal = params([x, y, 0.2, 0.9, 1.4, 3.9, 2.4, 1.6, m]);
+                    let metal = (params([x, y, 0.2, 0.9, 1.4, 3.9, 2.4, 1.6]), m);
                     one::<Microfacet<$d, Conductor, false>>(metal, &name("conductor"), &mut run);
-                    let glaze = params([x, y, 0.04, 0.3, 0.0, 1.0, 0.9, 0.5, 5.0, 2.0, m]);
+                    let glaze = (params([x, y, 0.04, 0.3, 0.0, 1.0, 0.9, 0.5, 5.0, 2.0]), m);
                     one::<Microfacet<$d, Schlick, false>>(glaze, &name("schlick, reflecting"), &mut run);
                     one::<Microfacet<$d, Schlick, true>>(glaze, &name("schlick, refracting"), &mut run);
                 }
@@ -243,12 +248,8 @@ fn densities_count_the_samples_and_weights_sum_to_the_albedo() {
 #[test]
 fn half_vector_samples_weigh_as_in_the_slides() {
     fn check<D: Distribution>(alpha: f32, geometry: Geometry) -> f64 {
-        let model = Microfacet::<D, Dielectric, false>::prepare(params([
-            alpha,
-            alpha,
-            1.5,
-            method(geometry, Sampling::Normals),
-        ]));
+        let model = Microfacet::<D, Dielectric, false>::prepare(params([alpha, alpha, 1.5]))
+            .choose(method(geometry, Sampling::Normals));
         let d = isotropic::<D>(alpha);
         let (mut random, mut worst) = (Random(SEED), 0.0f64);
         for k in 0..2000 {
@@ -355,8 +356,8 @@ fn schlick_is_exact_at_its_ends() {
 
 #[test]
 fn parameters_at_their_ends_stay_finite() {
-    fn check<M: Scatter>(values: Params) {
-        let model = M::prepare(values);
+    fn check<M: Scatter>(values: Params, choice: Choice) {
+        let model = M::prepare(values).choose(choice);
         let mut random = Random(SEED);
         for k in 0..400 {
             let cos = if k % 3 == 0 { 1e-10 } else { f64::from(random.number()).max(1e-6) };
@@ -377,11 +378,11 @@ fn parameters_at_their_ends_stay_finite() {
     for (g, s) in methods() {
         for a in odd {
             for b in odd {
-                check::<Microfacet<Ggx, Dielectric, false>>(params([a, 0.3, b, method(g, s)]));
-                check::<Microfacet<Blinn, Dielectric, true>>(params([0.5, a, b, method(g, s)]));
-                check::<Microfacet<Beckmann, Conductor, false>>(params([a, a, b, 1.0, b, a, b, 0.0, method(g, s)]));
-                check::<Microfacet<Blinn, Schlick, false>>(params([0.1, a, b, b, a, 1.0, a, b, a, 2.0, method(g, s)]));
-                check::<Microfacet<Ggx, Schlick, true>>(params([0.1, 0.9, b, a, a, 1.0, a, b, b, 0.5, method(g, s)]));
+                check::<Microfacet<Ggx, Dielectric, false>>(params([a, 0.3, b]), method(g, s));
+                check::<Microfacet<Blinn, Dielectric, true>>(params([0.5, a, b]), method(g, s));
+                check::<Microfacet<Beckmann, Conductor, false>>(params([a, a, b, 1.0, b, a, b, 0.0]), method(g, s));
+                check::<Microfacet<Blinn, Schlick, false>>(params([0.1, a, b, b, a, 1.0, a, b, a, 2.0]), method(g, s));
+                check::<Microfacet<Ggx, Schlick, true>>(params([0.1, 0.9, b, a, a, 1.0, a, b, b, 0.5]), method(g, s));
             }
         }
     }

@@ -24,7 +24,7 @@ fn lobes_of(closure: &str, lanes: usize) -> Lobes {
     let mut machine = Machine::new();
     let tree = machine.shade(&group, &points);
     let mut lobes = Lobes::new(Settings::default());
-    lobes.flatten(group.table(), tree, &Column3::splat(wo, lanes), &Column3::splat(Vec3::Z, lanes));
+    lobes.flatten(group.library(), tree, &Column3::splat(wo, lanes), &Column3::splat(Vec3::Z, lanes));
     lobes
 }
 

@@ -5,18 +5,17 @@ use crate::{SEED, direction, narrow};
 use glam::Vec3;
 use velour::closure::settings::{Settings, Shadowing};
 use velour::closure::tree::{Floats, Ints, Node, Param, Tree};
-use velour::closure::{Evaluation, Lobes, Samples, event};
+use velour::closure::{Evaluation, Library, Lobes, Samples, event};
 use velour::exec::MAX_LANES;
-use velour::lang::closures::ClosureTable;
 use velour::lang::symbols::Symbol;
 use velour::math::columns::Column3;
 use velour::measure::furnace::{hemisphere, integrate};
 use velour::measure::statistics::Random;
 
-fn tree(lanes: usize) -> (ClosureTable, Tree) {
+fn tree(lanes: usize) -> (Library, Tree) {
     let mut tree = Tree::default();
     tree.clear(lanes);
-    (ClosureTable::standard(), tree)
+    (Library::standard(), tree)
 }
 
 fn evaluate(lobes: &mut Lobes, lanes: usize, wi: Vec3) -> Evaluation {
@@ -222,7 +221,7 @@ fn no_light_leaks_through_a_tilted_normal() {
 }
 
 /// A tree with most closures in it, with columns that vary.
-fn everything(table: &ClosureTable, lanes: std::ops::Range<usize>) -> Tree {
+fn everything(table: &Library, lanes: std::ops::Range<usize>) -> Tree {
     let mut tree = Tree::default();
     tree.clear(lanes.len());
     let column = |tree: &mut Tree, f: &dyn Fn(f32) -> f32| {
@@ -255,7 +254,7 @@ fn everything(table: &ClosureTable, lanes: std::ops::Range<usize>) -> Tree {
 
 #[test]
 fn lanes_know_nothing_of_each_other() {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let run = |lanes: std::ops::Range<usize>| {
         let n = lanes.len();
         let tree = everything(&table, lanes.clone());
@@ -284,7 +283,7 @@ fn lanes_know_nothing_of_each_other() {
 }
 
 /// A tree that shines through a sheen, and has a hole in it.
-fn shining(table: &ClosureTable, lanes: usize) -> Tree {
+fn shining(table: &Library, lanes: usize) -> Tree {
     let mut tree = Tree::default();
     tree.clear(lanes);
     let column = tree.varying(&(0..lanes).map(|k| k as f32 * 0.25).collect::<Vec<f32>>());
@@ -299,7 +298,7 @@ fn shining(table: &ClosureTable, lanes: usize) -> Tree {
 
 #[test]
 fn batches_know_nothing_of_those_before() {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let empty = |lanes: usize| {
         let mut tree = Tree::default();
         tree.clear(lanes);

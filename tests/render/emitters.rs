@@ -1,10 +1,10 @@
 //! Light under layers: what a layer lets through depends on the view, so no such light is the same all over.
 
 use super::materials::picture_with;
-use velour::closure::{Lobes, Settings};
+use velour::closure::{Library, Lobes, Settings};
 use velour::compile::compile;
 use velour::exec::{Machine, Points};
-use velour::lang::closures::{ClosureSpec, ClosureTable, ParamKind};
+use velour::lang::closures::{ClosureSpec, ParamKind};
 use velour::math::columns::Column3;
 
 /// A call of a closure with these words for what it nests, and usual values for the rest.
@@ -33,7 +33,7 @@ fn seen(ci: &str, cos: f32) -> [f32; 2] {
     let wo = glam::Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     let (points, mut machine) = (Points::single(wo), Machine::new());
     let mut lobes = Lobes::new(Settings::default());
-    lobes.flatten(group.table(), machine.shade(&group, &points), &Column3::splat(wo, 1), &points.ng);
+    lobes.flatten(group.library(), machine.shade(&group, &points), &Column3::splat(wo, 1), &points.ng);
     [lobes.emission().x[0], lobes.holdout()[0]]
 }
 
@@ -41,10 +41,10 @@ fn seen(ci: &str, cos: f32) -> [f32; 2] {
 /// nests and every emitter below it; and what it does not is not found once for all.
 #[test]
 fn the_plan_and_the_lobes_agree_on_light_under_layers() {
-    let table = ClosureTable::standard();
+    let table = Library::standard();
     let emits = |spec: &&ClosureSpec| seen(&call(spec, "diffuse(N)"), 0.9)[0] > 0.0;
-    let emitters: Vec<&ClosureSpec> = table.specs.iter().filter(emits).collect();
-    let nests: Vec<&ClosureSpec> = table.specs.iter().filter(|spec| spec.nests()).collect();
+    let emitters: Vec<&ClosureSpec> = table.specs().iter().filter(emits).collect();
+    let nests: Vec<&ClosureSpec> = table.specs().iter().filter(|spec| spec.nests()).collect();
     assert!(emitters.len() >= 3 && nests.len() >= 3);
     for emitter in emitters {
         let plain = call(emitter, "");

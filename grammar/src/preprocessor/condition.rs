@@ -1,7 +1,7 @@
 //! The integer expressions of `#if` and `#elif`.
 
-use super::Preprocessor;
 use super::scan::{Kind, PpToken};
+use super::state::Preprocessor;
 use crate::diagnostic::Diagnostic;
 
 /// How deep parentheses and operators on the right may be nested.

@@ -1,7 +1,7 @@
 //! The directives: one line that starts with `#`.
 
 use super::scan::{Kind, PpToken};
-use super::{Conditional, Preprocessor};
+use super::state::{Conditional, Preprocessor};
 use crate::diagnostic::Diagnostic;
 use crate::source::Place;
 

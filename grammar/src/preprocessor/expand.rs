@@ -2,7 +2,7 @@
 
 use super::macros::{BodyToken, Macro, Meaning};
 use super::scan::{Kind, PpToken, scan};
-use super::{Frame, Preprocessor};
+use super::state::{Frame, Preprocessor};
 use crate::diagnostic::Diagnostic;
 use crate::source::{MacroCall, NO_CALL, Place};
 use std::rc::Rc;

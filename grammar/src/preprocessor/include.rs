@@ -1,7 +1,7 @@
 //! `#include`: where files are looked for, and what is said when one is not there.
 
-use super::Preprocessor;
 use super::scan::{Kind, PpToken};
+use super::state::Preprocessor;
 use crate::decode::decode;
 use crate::diagnostic::Diagnostic;
 use crate::source::Place;

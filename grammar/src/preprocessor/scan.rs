@@ -5,67 +5,139 @@
 //! inside strings and line comments.
 
 use crate::source::{NO_CALL, Place};
+use logos::{Filter, Lexer, Logos};
 
 /// The kinds of preprocessing token. Keywords are names here: macros may be called like keywords.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // `symbol` has the spellings
+#[derive(Logos, Clone, Copy, Debug, PartialEq, Eq)]
+#[logos(skip r"([ \t\r\x0b\x0c\u{feff}]|\\\r?\n)+")]
+#[logos(skip(r"//([^\\\n]|\\\r?\n|\\[^\r\n])*", allow_greedy = true))]
+#[allow(missing_docs)] // the spelling beside each variant says it all
 pub enum Kind {
+    #[token("\n")]
+    Newline,
+    #[regex("[A-Za-z_][A-Za-z0-9_]*")]
     Name,
+    #[regex(r"\.?[0-9][0-9.]*([eE][+-]?[0-9]+)?[A-Za-z0-9_.]*")]
     Number,
+    #[regex(r#""([^"\\\n]|\\[^\r\n]|\\\r?\n)*""#)]
     Text,
+    #[regex(r#""([^"\\\n]|\\[^\r\n]|\\\r?\n)*"#, priority = 1)]
     UnclosedText,
+    #[token("/*", block_comment)]
     UnclosedComment,
+    #[token("#")]
     Hash,
+    #[token("##")]
     Paste,
+    #[token("...")]
     Ellipsis,
+    #[token("(")]
     ParenOpen,
+    #[token(")")]
     ParenClose,
+    #[token("[")]
     BracketOpen,
+    #[token("]")]
     BracketClose,
+    #[token("[[")]
     MetaOpen,
+    #[token("{")]
     BraceOpen,
+    #[token("}")]
     BraceClose,
+    #[token(";")]
     Semicolon,
+    #[token(",")]
     Comma,
+    #[token(".")]
     Dot,
+    #[token("?")]
     Question,
+    #[token(":")]
     Colon,
+    #[token("+")]
     Plus,
+    #[token("-")]
     Minus,
+    #[token("*")]
     Star,
+    #[token("/")]
     Slash,
+    #[token("%")]
     Percent,
+    #[token("<<")]
     Shl,
+    #[token(">>")]
     Shr,
+    #[token("<")]
     Less,
+    #[token("<=")]
     LessEqual,
+    #[token(">")]
     Greater,
+    #[token(">=")]
     GreaterEqual,
+    #[token("==")]
     EqualEqual,
+    #[token("!=")]
     NotEqual,
+    #[token("&")]
     And,
+    #[token("^")]
     Caret,
+    #[token("|")]
     Pipe,
+    #[token("&&")]
     AndAnd,
+    #[token("||")]
     OrOr,
+    #[token("!")]
     Not,
+    #[token("~")]
     Tilde,
+    #[token("++")]
     Increment,
+    #[token("--")]
     Decrement,
+    #[token("=")]
     Assign,
+    #[token("+=")]
     AddAssign,
+    #[token("-=")]
     SubAssign,
+    #[token("*=")]
     MulAssign,
+    #[token("/=")]
     DivAssign,
+    #[token("&=")]
     AndAssign,
+    #[token("|=")]
     OrAssign,
+    #[token("^=")]
     XorAssign,
+    #[token("<<=")]
     ShlAssign,
+    #[token(">>=")]
     ShrAssign,
     /// A character that starts no token.
     Stray,
     /// Text for which a message has been reported.
     Broken,
+}
+
+/// Skips a comment that is closed; gives a token for one that is not.
+fn block_comment(lexer: &mut Lexer<'_, Kind>) -> Filter<()> {
+    let rest = lexer.remainder();
+    match rest.find("*/") {
+        Some(end) => {
+            lexer.bump(end + 2);
+            Filter::Skip
+        }
+        None => {
+            lexer.bump(rest.len());
+            Filter::Emit(())
+        }
+    }
 }
 
 /// A preprocessing token.
@@ -87,198 +159,21 @@ pub struct PpToken {
 
 /// All tokens of a text.
 pub fn scan(text: &str, file: u32) -> Vec<PpToken> {
-    let bytes = text.as_bytes();
     let mut tokens = Vec::with_capacity(text.len() / 4);
-    let (mut line_start, mut previous_end, mut at) = (true, 0, 0);
-    while at < bytes.len() {
-        let rest = &bytes[at..];
-        if rest[0] == b'\n' {
+    let mut lexer = Kind::lexer(text);
+    let (mut line_start, mut previous_end) = (true, 0);
+    while let Some(kind) = lexer.next() {
+        let range = lexer.span();
+        let kind = kind.unwrap_or(Kind::Stray);
+        if kind == Kind::Newline {
             line_start = true;
-            at += 1;
             continue;
         }
-        let skipped = skipped(rest);
-        if skipped > 0 {
-            at += skipped;
-            continue;
-        }
-        let (kind, length) = token(rest);
-        let place = Place { file, start: at as u32, end: (at + length) as u32 };
-        tokens.push(PpToken { kind, space: at > previous_end, line_start, painted: false, place, call: NO_CALL });
+        let place = Place { file, start: range.start as u32, end: range.end as u32 };
+        let space = range.start > previous_end;
+        tokens.push(PpToken { kind, space, line_start, painted: false, place, call: NO_CALL });
         line_start = false;
-        at += length;
-        previous_end = at;
+        previous_end = range.end;
     }
     tokens
-}
-
-/// The length of the white space, joined line or comment that bytes begin with; 0 for none.
-fn skipped(bytes: &[u8]) -> usize {
-    match bytes {
-        [b' ' | b'\t' | b'\r' | 0x0b | 0x0c, ..] => 1,
-        // The mark that some editors write in front of a text.
-        [0xef, 0xbb, 0xbf, ..] => 3,
-        [b'\\', rest @ ..] => newline(rest).map_or(0, |length| 1 + length),
-        [b'/', b'/', rest @ ..] => 2 + run(rest, b'\n'),
-        [b'/', b'*', rest @ ..] => rest.windows(2).position(|pair| pair == b"*/").map_or(0, |end| end + 4),
-        _ => 0,
-    }
-}
-
-/// The length of the line end that bytes begin with.
-fn newline(bytes: &[u8]) -> Option<usize> {
-    match bytes {
-        [b'\n', ..] => Some(1),
-        [b'\r', b'\n', ..] => Some(2),
-        _ => None,
-    }
-}
-
-/// The length of what a string or line comment holds: up to `end`, a line end or the end of the text. A backslash takes
-/// the character or line end after it along.
-fn run(bytes: &[u8], end: u8) -> usize {
-    let mut at = 0;
-    while at < bytes.len() && bytes[at] != end && bytes[at] != b'\n' {
-        at += match &bytes[at..] {
-            [b'\\', rest @ ..] => match (newline(rest), rest.first()) {
-                (Some(length), _) => 1 + length,
-                (None, None | Some(b'\r')) => break,
-                // The bytes after the first of a longer character end nothing.
-                (None, Some(_)) => 2,
-            },
-            _ => 1,
-        };
-    }
-    at
-}
-
-/// The token that bytes begin with, and its length.
-fn token(bytes: &[u8]) -> (Kind, usize) {
-    let word = |from: usize, dot: bool| {
-        let belongs = |c: &u8| c.is_ascii_alphanumeric() || *c == b'_' || (dot && *c == b'.');
-        from + bytes[from..].iter().take_while(|c| belongs(c)).count()
-    };
-    match bytes {
-        [b'a'..=b'z' | b'A'..=b'Z' | b'_', ..] => (Kind::Name, word(1, false)),
-        [b'0'..=b'9', ..] | [b'.', b'0'..=b'9', ..] => {
-            let digits = bytes.iter().take_while(|c| c.is_ascii_digit() || **c == b'.').count();
-            let exponent = match &bytes[digits..] {
-                [b'e' | b'E', b'0'..=b'9', ..] => 2,
-                [b'e' | b'E', b'+' | b'-', b'0'..=b'9', ..] => 3,
-                _ => 0,
-            };
-            // What hangs on a number belongs to it, so that a message can show all of `1.5f` or `3rd`.
-            (Kind::Number, word(digits + exponent, true))
-        }
-        [b'"', rest @ ..] => {
-            let inside = run(rest, b'"');
-            let closed = rest.get(inside) == Some(&b'"');
-            if closed { (Kind::Text, inside + 2) } else { (Kind::UnclosedText, inside + 1) }
-        }
-        [b'/', b'*', ..] => (Kind::UnclosedComment, bytes.len()),
-        _ => symbol(bytes).unwrap_or((Kind::Stray, character(bytes[0]))),
-    }
-}
-
-/// The length of the character of UTF-8 that begins with a byte.
-fn character(first: u8) -> usize {
-    match first {
-        0xf0.. => 4,
-        0xe0.. => 3,
-        0xc0.. => 2,
-        _ => 1,
-    }
-}
-
-/// The operator or bracket that bytes begin with, and its length: the longest there is.
-fn symbol(bytes: &[u8]) -> Option<(Kind, usize)> {
-    Some(match bytes {
-        [b'.', b'.', b'.', ..] => (Kind::Ellipsis, 3),
-        [b'<', b'<', b'=', ..] => (Kind::ShlAssign, 3),
-        [b'>', b'>', b'=', ..] => (Kind::ShrAssign, 3),
-        [b'#', b'#', ..] => (Kind::Paste, 2),
-        [b'[', b'[', ..] => (Kind::MetaOpen, 2),
-        [b'<', b'<', ..] => (Kind::Shl, 2),
-        [b'>', b'>', ..] => (Kind::Shr, 2),
-        [b'<', b'=', ..] => (Kind::LessEqual, 2),
-        [b'>', b'=', ..] => (Kind::GreaterEqual, 2),
-        [b'=', b'=', ..] => (Kind::EqualEqual, 2),
-        [b'!', b'=', ..] => (Kind::NotEqual, 2),
-        [b'&', b'&', ..] => (Kind::AndAnd, 2),
-        [b'|', b'|', ..] => (Kind::OrOr, 2),
-        [b'+', b'+', ..] => (Kind::Increment, 2),
-        [b'-', b'-', ..] => (Kind::Decrement, 2),
-        [b'+', b'=', ..] => (Kind::AddAssign, 2),
-        [b'-', b'=', ..] => (Kind::SubAssign, 2),
-        [b'*', b'=', ..] => (Kind::MulAssign, 2),
-        [b'/', b'=', ..] => (Kind::DivAssign, 2),
-        [b'&', b'=', ..] => (Kind::AndAssign, 2),
-        [b'|', b'=', ..] => (Kind::OrAssign, 2),
-        [b'^', b'=', ..] => (Kind::XorAssign, 2),
-        [b'#', ..] => (Kind::Hash, 1),
-        [b'(', ..] => (Kind::ParenOpen, 1),
-        [b')', ..] => (Kind::ParenClose, 1),
-        [b'[', ..] => (Kind::BracketOpen, 1),
-        [b']', ..] => (Kind::BracketClose, 1),
-        [b'{', ..] => (Kind::BraceOpen, 1),
-        [b'}', ..] => (Kind::BraceClose, 1),
-        [b';', ..] => (Kind::Semicolon, 1),
-        [b',', ..] => (Kind::Comma, 1),
-        [b'.', ..] => (Kind::Dot, 1),
-        [b'?', ..] => (Kind::Question, 1),
-        [b':', ..] => (Kind::Colon, 1),
-        [b'+', ..] => (Kind::Plus, 1),
-        [b'-', ..] => (Kind::Minus, 1),
-        [b'*', ..] => (Kind::Star, 1),
-        [b'/', ..] => (Kind::Slash, 1),
-        [b'%', ..] => (Kind::Percent, 1),
-        [b'<', ..] => (Kind::Less, 1),
-        [b'>', ..] => (Kind::Greater, 1),
-        [b'&', ..] => (Kind::And, 1),
-        [b'^', ..] => (Kind::Caret, 1),
-        [b'|', ..] => (Kind::Pipe, 1),
-        [b'!', ..] => (Kind::Not, 1),
-        [b'~', ..] => (Kind::Tilde, 1),
-        [b'=', ..] => (Kind::Assign, 1),
-        _ => return None,
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Kind and text of each token.
-    fn tokens(text: &str) -> Vec<(Kind, &str)> {
-        scan(text, 0).iter().map(|t| (t.kind, &text[t.place.start as usize..t.place.end as usize])).collect()
-    }
-
-    #[test]
-    fn the_longest_token_wins() {
-        use Kind::*;
-        assert_eq!(tokens("a<<=[[..."), [(Name, "a"), (ShlAssign, "<<="), (MetaOpen, "[["), (Ellipsis, "...")]);
-        assert_eq!(tokens(".5e-3f-1e+x"), [(Number, ".5e-3f"), (Minus, "-"), (Number, "1e"), (Plus, "+"), (Name, "x")]);
-        assert_eq!(tokens("..1.2.3"), [(Dot, "."), (Number, ".1.2.3")]);
-        assert_eq!(tokens("é\\x"), [(Stray, "é"), (Stray, "\\"), (Name, "x")]);
-    }
-
-    #[test]
-    fn a_backslash_joins_lines_everywhere() {
-        use Kind::*;
-        let joined = "a \\\r\nb // c \\\n d\n\"e \\\" \\\n f\" \"g\\";
-        let expected = [(Name, "a"), (Name, "b"), (Text, "\"e \\\" \\\n f\""), (UnclosedText, "\"g"), (Stray, "\\")];
-        assert_eq!(tokens(joined), expected);
-        let starts: Vec<bool> = scan(joined, 0).iter().map(|t| t.line_start).collect();
-        assert_eq!(starts, [true, false, true, false, false]);
-    }
-
-    #[test]
-    fn comments_are_space_unless_they_never_end() {
-        use Kind::*;
-        assert_eq!(
-            tokens("a/* * / */b/**/c/*/ d"),
-            [(Name, "a"), (Name, "b"), (Name, "c"), (UnclosedComment, "/*/ d")]
-        );
-        assert!(scan("a/**/b", 0)[1].space && !scan("a+b", 0)[1].space);
-    }
 }

@@ -1,7 +1,7 @@
 //! Expressions as text, with the fewest parentheses. It works on a list of what is left to print and not by
 //! recursion, since a chain of operators can be very deep.
 
-use super::print_type;
+use super::types::print_type;
 use crate::ast::*;
 use std::borrow::Cow;
 

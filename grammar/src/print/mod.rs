@@ -1,6 +1,9 @@
 //! The tree as text: normalised OSL that parses back to an equal tree, spans aside.
 
 mod expression;
+mod types;
+
+pub use types::print_type;
 
 use crate::ast::*;
 use std::fmt::Write;
@@ -26,23 +29,6 @@ pub fn print_expr(expr: &Expr) -> String {
     let mut out = String::new();
     expression::write(expr, &mut out);
     out
-}
-
-/// Prints a type.
-pub fn print_type(ty: &TypeSpec) -> String {
-    let base = match &ty.base {
-        TypeName::Int => "int",
-        TypeName::Float => "float",
-        TypeName::Color => "color",
-        TypeName::Point => "point",
-        TypeName::Vector => "vector",
-        TypeName::Normal => "normal",
-        TypeName::Matrix => "matrix",
-        TypeName::String => "string",
-        TypeName::Void => "void",
-        TypeName::Struct(name) => name,
-    };
-    if ty.closure { format!("closure {base}") } else { base.to_string() }
 }
 
 /// The word that starts a shader.

@@ -16,7 +16,7 @@ use super::Params;
 use glam::Vec3;
 
 /// What a boundary reflects at each angle.
-pub trait Fresnel: Copy {
+pub trait Fresnel: Copy + 'static {
     /// How many parameters it reads.
     const PARAMS: usize;
     /// True when the three components of [`Fresnel::color`] differ.
@@ -38,36 +38,5 @@ pub trait Fresnel: Copy {
     fn passed(&self, cos: f32) -> f32 {
         let c = self.color(cos);
         1.0 - c.x.min(c.y).min(c.z)
-    }
-}
-
-/// The models by name, where a type would not do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Term {
-    /// [`Dielectric`].
-    Dielectric,
-    /// [`Conductor`].
-    Conductor,
-    /// [`Schlick`].
-    Schlick,
-}
-
-impl Term {
-    /// [`Fresnel::color`] of these parameters.
-    pub fn color(self, params: Params, cos: f32) -> Vec3 {
-        match self {
-            Term::Dielectric => Dielectric::prepare(params, 0).color(cos),
-            Term::Conductor => Conductor::prepare(params, 0).color(cos),
-            Term::Schlick => Schlick::prepare(params, 0).color(cos),
-        }
-    }
-
-    /// [`Fresnel::eta`] of these parameters.
-    pub fn eta(self, params: Params) -> f32 {
-        match self {
-            Term::Dielectric => Dielectric::prepare(params, 0).eta(),
-            Term::Conductor => Conductor::prepare(params, 0).eta(),
-            Term::Schlick => Schlick::prepare(params, 0).eta(),
-        }
     }
 }

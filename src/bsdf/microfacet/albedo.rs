@@ -13,16 +13,17 @@
 //! material, which a textured width or index would need by the lane. Nodes fill whole vectors, so that one lane's are computed
 //! side by side. An albedo of one width takes 24 ns a lane.
 
-use super::Geometry;
-use super::distribution::{Distribution, Widths};
+use super::distribution::{Distribution, MIN_ALPHA, Widths};
+use super::geometry::{Facets, Geometry};
 use super::ggx::Ggx;
 use crate::bsdf::fresnel::{Fresnel, limited};
 use crate::bsdf::power::{exp2, log2};
 use crate::bsdf::select;
 use crate::math::elementary::floor_and_rest;
-use crate::math::quadrature::{Node, gauss_legendre};
+use crate::math::quadrature::{Node, gauss_legendre, gauss_rule};
 use glam::{Mat4, Vec3, Vec4};
 use std::f32::consts::LN_2;
+use std::sync::OnceLock;
 
 /// Nodes of the rule.
 const NODES: usize = 6;
@@ -34,7 +35,7 @@ const COSINES: usize = 40;
 const LINEAR: f32 = 6.0;
 /// Where the axis of cosines turns from linear to logarithmic, in widths.
 const BEND: f32 = 0.04;
-const LEAST: f32 = super::MIN_ALPHA;
+const LEAST: f32 = MIN_ALPHA;
 
 /// Vectors of four that hold a cell.
 const QUADS: usize = 2 * NODES / 4;
@@ -141,6 +142,13 @@ fn cosine_axis(cos: f32, alpha: f32) -> f32 {
 }
 
 impl FacetTable {
+    /// The albedos of all widths of a distribution under a shadowing term, made when they are first asked for.
+    pub fn of<D: Distribution>(geometry: Geometry) -> &'static FacetTable {
+        const NONE: [OnceLock<FacetTable>; Geometry::ALL.len()] = [const { OnceLock::new() }; Geometry::ALL.len()];
+        static TABLES: [[OnceLock<FacetTable>; Geometry::ALL.len()]; Facets::COUNT] = [NONE; Facets::COUNT];
+        TABLES[D::FACETS as usize][geometry as usize].get_or_init(|| FacetTable::build::<D>(geometry))
+    }
+
     /// Integrates the distribution at all places of the table; takes some 40 to 60 ms on one thread.
     pub fn build<D: Distribution>(geometry: Geometry) -> Self {
         let (along, across) = (gauss_legendre(20, 0.0, 1.0), gauss_legendre(14, 0.0, 1.0));
@@ -155,7 +163,7 @@ impl FacetTable {
                 let cos = ((exp2(t * log2(1.0 + over)) - 1.0) / over).clamp(1e-6, 1.0);
                 points.clear();
                 facets(&distribution, geometry, [alpha, cos], [&along, &across], &mut points);
-                let rule = gauss_rule(&points);
+                let rule: [Node; NODES] = gauss_rule(&points);
                 let mut cell = [0.0; 2 * NODES];
                 for k in 0..NODES {
                     cell[k] = (rule[k].weight * (rule[k].x - f64::from(cos))) as f32;
@@ -373,87 +381,9 @@ fn facets<D: Distribution>(
     }
 }
 
-/// The Gauss rule of a measure, nodes rising.
-///
-/// Source: Stieltjes's recurrence and the eigenvalues of its matrix (Golub and Welsch 1969), by Jacobi's rotations.
-/// Degenerate cases: a measure of fewer points gets nodes of weight 0, an empty one only those.
-fn gauss_rule(points: &[Node]) -> [Node; NODES] {
-    let total: f64 = points.iter().map(|p| p.weight).sum();
-    let mut rule = [Node { x: 0.0, weight: 0.0 }; NODES];
-    if total <= 0.0 {
-        return rule;
-    }
-    let mut matrix = [[0.0; NODES]; NODES];
-    // Two polynomials of the recurrence at every point.
-    let mut values = vec![(0.0, 1.0 / total.sqrt()); points.len()];
-    let mut before = 0.0f64;
-    for k in 0..NODES {
-        let center: f64 = points.iter().zip(&values).map(|(p, v)| p.weight * p.x * v.1 * v.1).sum();
-        matrix[k][k] = center;
-        let mut square = 0.0;
-        for (p, v) in points.iter().zip(&mut values) {
-            *v = (v.1, (p.x - center) * v.1 - before * v.0);
-            square += p.weight * v.1 * v.1;
-        }
-        before = square.max(0.0).sqrt();
-        let inverse = if before > 1e-12 { 1.0 / before } else { 0.0 };
-        values.iter_mut().for_each(|v| v.1 *= inverse);
-        if k + 1 < NODES {
-            (matrix[k][k + 1], matrix[k + 1][k]) = (before, before);
-        }
-    }
-    let first = diagonalise(&mut matrix);
-    for (k, node) in rule.iter_mut().enumerate() {
-        *node = Node { x: matrix[k][k], weight: total * first[k] * first[k] };
-    }
-    rule.sort_by(|a, b| a.x.total_cmp(&b.x));
-    rule
-}
-
-/// Brings a symmetric matrix to its eigenvalues and gives the first components of their vectors.
-fn diagonalise(a: &mut [[f64; NODES]; NODES]) -> [f64; NODES] {
-    let mut first = [0.0; NODES];
-    first[0] = 1.0;
-    for _ in 0..8 {
-        for p in 0..NODES {
-            for q in p + 1..NODES {
-                if a[p][q].abs() < 1e-13 {
-                    continue;
-                }
-                // The smaller rotation that makes a[p][q] vanish.
-                let half = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-                let t = 1f64.copysign(half) / (half.abs() + (half * half + 1.0).sqrt());
-                let c = 1.0 / (t * t + 1.0).sqrt();
-                let s = t * c;
-                for row in a.iter_mut() {
-                    (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-                }
-                for k in 0..NODES {
-                    (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-                }
-                (first[p], first[q]) = (c * first[p] - s * first[q], s * first[p] + c * first[q]);
-            }
-        }
-    }
-    first
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn rules_integrate_polynomials_of_degree_eleven() {
-        let points: Vec<Node> =
-            (0..50).map(|k| Node { x: f64::from(k) / 49.0, weight: 1.0 + f64::from(k % 7) }).collect();
-        let rule = gauss_rule(&points);
-        for degree in 0..12 {
-            let sum = |nodes: &[Node]| nodes.iter().map(|n| n.weight * n.x.powi(degree)).sum::<f64>();
-            assert!((sum(&rule) / sum(&points) - 1.0).abs() < 1e-12, "{degree}");
-        }
-        let single = gauss_rule(&[Node { x: 0.3, weight: 0.7 }]);
-        assert!((single.iter().map(|n| n.weight * n.x).sum::<f64>() - 0.21).abs() < 1e-12);
-    }
 
     #[test]
     fn a_row_has_the_bits_of_its_table() {

@@ -1,14 +1,12 @@
 //! Facets of Beckmann and Spizzichino.
 
-use super::Geometry;
-use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths, normal_of_slope};
+use super::geometry::Facets;
 use crate::bsdf::power;
 use crate::math::elementary::exp;
 use crate::math::warp::turn;
 use glam::Vec3;
 use std::f32::consts::PI;
-use std::sync::OnceLock;
 
 /// Polynomial of k(a), fitted on a 0..10.
 const K: [f32; 11] = [
@@ -30,10 +28,7 @@ const K: [f32; 11] = [
 pub struct Beckmann(pub Widths);
 
 impl Distribution for Beckmann {
-    fn table(geometry: Geometry) -> &'static FacetTable {
-        static TABLES: [OnceLock<FacetTable>; 3] = [const { OnceLock::new() }; 3];
-        TABLES[geometry as usize].get_or_init(|| FacetTable::build::<Beckmann>(geometry))
-    }
+    const FACETS: Facets = Facets::Beckmann;
 
     #[inline(always)]
     fn new(widths: Widths) -> Self {

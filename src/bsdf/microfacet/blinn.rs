@@ -1,15 +1,13 @@
 //! Facets of Blinn: a power of the cosine, with the Smith term that belongs to it.
 
-use super::Geometry;
-use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths};
+use super::geometry::Facets;
 use crate::bsdf::power::{exp2, log2};
 use crate::bsdf::select;
 use crate::math::elementary::expm1;
 use crate::math::warp::turn;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, LN_2, LOG2_E, PI};
-use std::sync::OnceLock;
 
 /// Blinn's distribution D = (s + 2) / (2 pi) cos^s of the width alpha, s = 2 / alpha² - 2.
 ///
@@ -45,10 +43,7 @@ fn log2_cos2(sin2: f32, cos2: f32) -> f32 {
 }
 
 impl Distribution for Blinn {
-    fn table(geometry: Geometry) -> &'static FacetTable {
-        static TABLES: [OnceLock<FacetTable>; 3] = [const { OnceLock::new() }; 3];
-        TABLES[geometry as usize].get_or_init(|| FacetTable::build::<Blinn>(geometry))
-    }
+    const FACETS: Facets = Facets::Blinn;
 
     #[inline(always)]
     fn new(w: Widths) -> Self {

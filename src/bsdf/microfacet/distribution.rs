@@ -1,8 +1,10 @@
 //! What a distribution of microfacets must answer, and the widths that all of them share.
 
-use super::Geometry;
-use super::albedo::FacetTable;
+use super::geometry::Facets;
 use glam::Vec3;
+
+/// Below this width in both directions a boundary counts as smooth.
+pub const MIN_ALPHA: f32 = 1e-3;
 
 /// Widths of a distribution along the local x and y axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,9 +16,9 @@ pub struct Widths {
 }
 
 /// A distribution of microfacets over a flat surface, with the Smith shadowing that belongs to it.
-pub trait Distribution: Copy {
-    /// The albedos of all widths under a shadowing term, made when they are first asked for.
-    fn table(geometry: Geometry) -> &'static FacetTable;
+pub trait Distribution: Copy + 'static {
+    /// Its name where a type would not do.
+    const FACETS: Facets;
     /// Makes the constants; widths are in 1e-3..1.
     fn new(widths: Widths) -> Self;
     /// The widths in force, which are not those given where a model has only one.

@@ -1,22 +1,17 @@
 //! Facets of Trowbridge and Reitz (GGX), and their visible normals, which all distributions sample.
 
-use super::Geometry;
-use super::albedo::FacetTable;
 use super::distribution::{Distribution, Widths, normal_of_slope};
+use super::geometry::Facets;
 use crate::math::warp::turn;
 use glam::Vec3;
 use std::f32::consts::PI;
-use std::sync::OnceLock;
 
 /// Trowbridge-Reitz, anisotropic.
 #[derive(Clone, Copy, Debug)]
 pub struct Ggx(pub Widths);
 
 impl Distribution for Ggx {
-    fn table(geometry: Geometry) -> &'static FacetTable {
-        static TABLES: [OnceLock<FacetTable>; 3] = [const { OnceLock::new() }; 3];
-        TABLES[geometry as usize].get_or_init(|| FacetTable::build::<Ggx>(geometry))
-    }
+    const FACETS: Facets = Facets::Ggx;
 
     #[inline(always)]
     fn new(widths: Widths) -> Self {

@@ -8,7 +8,7 @@
 //! that visible normals of their own need, instead of sampling D cos, whose weights (o . m) / ((n . o) (n . m)) are
 //! unbounded at grazing views. The latter is kept as [`Sampling::Normals`], to be compared with.
 //!
-//! Decision (2026-11-22): the shadowing term and the way of sampling are one parameter, because the three terms share the
+//! Decision (2026-11-22): the shadowing term and the way of sampling are one [`Choice`], because the three terms share the
 //! two Lambdas and the lane loop blends them, instead of types, of which there are fifteen already. Measured on a thousand
 //! lanes, AVX2: GGX is evaluated in 5.6 ns as before and sampled in 20.4 instead of 19.5 ns, Beckmann in 13.9 instead of
 //! 12.2 and 25.8 instead of 24.6 ns; Blinn takes 10.7 and 26.0 ns, a GGX metal 9.0 and 23.5 ns.
@@ -17,75 +17,27 @@ pub mod albedo;
 pub mod beckmann;
 pub mod blinn;
 pub mod distribution;
+pub mod geometry;
 pub mod ggx;
 
 pub use beckmann::Beckmann;
 pub use blinn::Blinn;
+pub use distribution::MIN_ALPHA;
+pub use geometry::{Facets, Geometry, Method, Sampling};
 pub use ggx::Ggx;
 
 use super::fresnel::{Fresnel, limited, refracted};
-use super::{Eval, Params, Scatter, Side, View, select};
-use albedo::BLOCK;
+use super::{Choice, Eval, Params, Scatter, Side, Spread, View, select};
+use albedo::{BLOCK, FacetTable};
 use distribution::{Distribution, Widths};
 use glam::Vec3;
-
-/// Below this width in both directions a boundary counts as smooth.
-pub const MIN_ALPHA: f32 = 1e-3;
 
 /// The least |eta - 1| that refracts visibly; nearer to 1 light goes straight on.
 pub const MIN_ETA_DIFFERENCE: f32 = 1e-3;
 
-/// How facets shadow each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Geometry {
-    /// Smith, masking and shadowing correlated by height (Heitz 2014, eq. 99).
-    Smith,
-    /// Smith, the product of masking and shadowing (Smith 1967; Walter et al. 2007, eq. 23).
-    Separable,
-    /// V-shaped grooves (Torrance and Sparrow 1967; Blinn 1977): min(1, 2 (n.m)(n.o)/(o.m), 2 (n.m)(n.i)/(o.m)).
-    /// Refraction has |n.i| / |i.m| in the last place: still at most the masking of the viewer, so both halves of a facet
-    /// share the light that reaches it, which the Smith term beside it would break by up to 29 %.
-    VGroove,
-}
-
-/// How directions are chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sampling {
-    /// Reflection at a facet that the viewer sees, of GGX of the same widths.
-    Visible,
-    /// Reflection at any facet, with density D cos (the half-vector sampling of Blinn's and Walter's models).
-    Normals,
-}
-
-impl Geometry {
-    /// The part of a facet that neither direction's neighbours hide, in double precision, for integration: from both Lambdas,
-    /// both cosines to the normal, and the facet's cosines to the viewer and to the normal.
-    fn part(self, [lambda_o, lambda_i]: [f64; 2], [cos_o, cos_i]: [f64; 2], om: f64, mz: f64) -> f64 {
-        match self {
-            Geometry::Smith => 1.0 / (1.0 + lambda_o + lambda_i),
-            Geometry::Separable => 1.0 / ((1.0 + lambda_o) * (1.0 + lambda_i)),
-            Geometry::VGroove => (2.0 * mz * cos_o.min(cos_i) / om.max(1e-20)).min(1.0),
-        }
-    }
-
-    /// All of them, by the word that chooses them.
-    pub const ALL: &[(&str, Geometry)] =
-        &[("smith", Geometry::Smith), ("separable", Geometry::Separable), ("vgroove", Geometry::VGroove)];
-}
-
-impl Sampling {
-    /// All of them, by the word that chooses them.
-    pub const ALL: &[(&str, Sampling)] = &[("visible", Sampling::Visible), ("normals", Sampling::Normals)];
-}
-
-/// The parameter of [`Microfacet`] that stands for these choices; 0 is the default.
-pub fn method(geometry: Geometry, sampling: Sampling) -> f32 {
-    f32::from(geometry as u8) + 3.0 * f32::from(sampling as u8)
-}
-
 /// One side of a rough boundary: what it reflects (`REFRACT` false) or what it lets through.
 ///
-/// Parameters: widths along x and y, those of the Fresnel term, and [`method`].
+/// Parameters: widths along x and y, and those of the Fresnel term. Choice: [`Method`].
 /// Source: Walter, Marschner, Li and Torrance 2007, eq. 20, 21, 38 with a shadowing term of [`Geometry`].
 /// Domain: widths clamped to 1e-3..1, any index. Gives: f cos in 1/sr, of a colored Fresnel term without it.
 /// Degenerate cases: light on the wrong side gives 0, an index <= 0 and total reflection refract nothing.
@@ -190,8 +142,10 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
 }
 
 impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D, F, REFRACT> {
-    const PARAMS: usize = 3 + F::PARAMS;
+    const PARAMS: usize = 2 + F::PARAMS;
     const SIDE: Side = if REFRACT { Side::Other } else { Side::Same };
+    const SPREAD: Spread = Spread::Narrow;
+    const TOP: bool = true;
     const COLORED: bool = F::COLORED;
     const VIEW: usize = 3;
 
@@ -199,16 +153,24 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
     fn prepare(params: Params) -> Self {
         let widths = Widths { x: limited(params[0], MIN_ALPHA, 1.0), y: limited(params[1], MIN_ALPHA, 1.0) };
         let distribution = D::new(widths);
-        let method = params[2 + F::PARAMS];
-        let normals = method > 2.5;
-        let geometry = method - select(normals, 3.0, 0.0);
         Microfacet {
             distribution,
             visible: Ggx(distribution.widths()),
             fresnel: F::prepare(params, 2),
-            separable: select(geometry > 0.5 && geometry < 1.5, 1.0, 0.0),
-            groove: geometry > 1.5,
-            normals,
+            separable: 0.0,
+            groove: false,
+            normals: false,
+        }
+    }
+
+    #[inline(always)]
+    fn choose(self, choice: Choice) -> Self {
+        let Method { geometry, sampling } = choice.into();
+        Microfacet {
+            separable: select(geometry == Geometry::Separable, 1.0, 0.0),
+            groove: geometry == Geometry::VGroove,
+            normals: sampling == Sampling::Normals,
+            ..self
         }
     }
 
@@ -272,7 +234,7 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
     /// Transmitting: up to 0.33 too much at width 1.
     #[inline(always)]
     fn top_albedo(&self, w: Vec3) -> f32 {
-        let table = D::table(self.geometry());
+        let table = FacetTable::of::<D>(self.geometry());
         self.taken(table.color(&self.fresnel, self.width_toward(w), w.z.abs().min(1.0)))
     }
 
@@ -281,7 +243,7 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
     fn top_albedos(&self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
         let n = out.len();
         let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
-        let table = D::table(self.geometry());
+        let table = FacetTable::of::<D>(self.geometry());
         let widths = self.visible.0;
         if widths.x == widths.y {
             let row = table.row(self.width_toward(Vec3::Z));

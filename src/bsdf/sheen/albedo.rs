@@ -13,21 +13,18 @@
 
 use super::fits::{
     ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_LONG, ALBEDO_EXACT_SOFT, ALBEDO_EXACT_SOFT_LONG, ALBEDO_PUBLISHED,
-    ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET,
+    ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET, CURVE, CURVE_COLUMNS, CurveFit,
 };
-use super::shadowing::Shadowing;
+use super::term::Shadowing;
 use crate::bsdf::power::log2;
+use crate::math::polynomial::chebyshev;
 use std::fmt;
 use std::str::FromStr;
 
-/// Coefficients of a curve in the cube root of the cosine.
-pub const CURVE: usize = 13;
 /// Coefficients that the fitted exact terms use.
 pub const SHORT: usize = 7;
 /// Coefficients that the cheapest evaluation uses.
 const SHORTEST: usize = 4;
-/// Coefficients in log r of the long curves.
-pub const SURFACE_COLUMNS: usize = 9;
 /// The smallest cosine of the fit; below it the curve is constant.
 const MIN_COS: f32 = 1e-4;
 const MIN_T: f32 = 0.046_415_888;
@@ -77,9 +74,6 @@ impl fmt::Display for SheenAlbedo {
     }
 }
 
-/// Coefficients of a curve for every roughness.
-pub type Surface = [[f32; SURFACE_COLUMNS]; CURVE];
-
 /// The albedo of one roughness as Chebyshev coefficients.
 ///
 /// Source: own fits. Domain: cosine 0..1, roughness 0.06..1, below it the albedo of 0.06. Gives: 0..1.
@@ -122,31 +116,31 @@ impl AlbedoCurve {
     }
 
     #[inline(always)]
-    fn short(surface: &[[f32; 5]; SHORT], r: f32) -> Self {
+    fn short(fit: &[[f32; 5]; SHORT], r: f32) -> Self {
         let mut c = [0.0; CURVE];
         let s = roughness_axis(r);
         for i in 0..SHORT {
-            c[i] = chebyshev::<5>(&surface[i], s);
+            c[i] = chebyshev::<5>(&fit[i], s);
         }
         AlbedoCurve { c }
     }
 
     #[inline(always)]
-    fn shortest(surface: &[[f32; 5]; SHORT], r: f32) -> Self {
+    fn shortest(fit: &[[f32; 5]; SHORT], r: f32) -> Self {
         let mut c = [0.0; CURVE];
         let s = roughness_axis(r);
         for i in 0..SHORTEST {
-            c[i] = chebyshev::<3>(&surface[i], s);
+            c[i] = chebyshev::<3>(&fit[i], s);
         }
         AlbedoCurve { c }
     }
 
     #[inline(always)]
-    fn long(surface: &Surface, r: f32) -> Self {
+    fn long(fit: &CurveFit, r: f32) -> Self {
         let s = roughness_axis(r);
         let mut c = [0.0; CURVE];
         for i in 0..CURVE {
-            c[i] = chebyshev::<SURFACE_COLUMNS>(&surface[i], s);
+            c[i] = chebyshev::<CURVE_COLUMNS>(&fit[i], s);
         }
         AlbedoCurve { c }
     }
@@ -216,14 +210,4 @@ pub(crate) fn cube_root(x: f32) -> f32 {
 #[inline(always)]
 fn roughness_axis(r: f32) -> f32 {
     1.0 - log2(r.clamp(MIN_FITTED_ROUGHNESS, 1.0)) * (2.0 / LOG2_MIN)
-}
-
-/// The first N terms of a Chebyshev series by Clenshaw's recurrence.
-#[inline(always)]
-pub(super) fn chebyshev<const N: usize>(c: &[f32], x: f32) -> f32 {
-    let (mut b1, mut b2) = (0.0, 0.0);
-    for k in (1..N).rev() {
-        (b1, b2) = (2.0 * x * b1 - b2 + c[k], b1);
-    }
-    x * b1 - b2 + c[0]
 }

@@ -5,8 +5,15 @@
 //! the long ones, of degree 12 times 8, interpolate quadrature at Chebyshev nodes (`tests/bsdf/fits.rs` makes them anew).
 //! Sampler: polynomials of degree 2 in sin theta_o (slow index) and sqrt r (fast index).
 
-use super::albedo::Surface;
-use super::shadowing::Shadowing;
+use super::term::Shadowing;
+
+/// Coefficients of a curve in the cube root of the cosine.
+pub const CURVE: usize = 13;
+/// Coefficients in log r of the long curves.
+pub const CURVE_COLUMNS: usize = 9;
+
+/// Coefficients of a curve for every roughness.
+pub type CurveFit = [[f32; CURVE_COLUMNS]; CURVE];
 
 /// Coefficients of a sampler: of ln a, and of b over sin theta_o.
 pub struct ProposalFit {
@@ -27,7 +34,9 @@ pub fn proposal_fit(term: Shadowing, soft: bool) -> ProposalFit {
     match (term, soft) {
         (Shadowing::Exact | Shadowing::Series, true) => ProposalFit { log_a: &LOG_A_EXACT_SOFT, b: &B_EXACT_SOFT },
         (Shadowing::Published, true) => ProposalFit { log_a: &LOG_A_PUBLISHED_SOFT, b: &B_PUBLISHED_SOFT },
-        _ => ProposalFit { log_a: &LOG_A_EXACT, b: &B_EXACT },
+        (Shadowing::Exact | Shadowing::Series | Shadowing::Published, false) | (Shadowing::Ashikhmin, _) => {
+            ProposalFit { log_a: &LOG_A_EXACT, b: &B_EXACT }
+        }
     }
 }
 
@@ -79,7 +88,7 @@ const B_PUBLISHED_SOFT: [f32; 9] =
 
 /// Albedo of the published fit with softened terminator: degree 12 in the cube root, 8 in log r.
 #[rustfmt::skip]
-pub const ALBEDO_PUBLISHED_SOFT: Surface = [
+pub const ALBEDO_PUBLISHED_SOFT: CurveFit = [
     [0.440_332_95, 0.092_858_28, 0.038_923_293, -0.007_895_282, -0.007_880_256, -0.003_265_552_5, -0.000_951_896_2, -0.000_189_666_71, -1.609_400_9e-5],
     [-0.397_313_68, 0.054_501_273, -0.030_743_653, 0.005_889_931, 0.005_229_536, 0.002_701_774, 0.000_993_157_4, 0.000_225_446_43, 1.810_607_5e-5],
     [-0.038_122_784, -0.060_182_124, 0.018_228_896, -4.316_980_6e-5, 0.000_749_438_4, 0.000_115_989_074, -3.455_436_3e-5, -3.163_839e-5, -9.292_781e-6],
@@ -97,7 +106,7 @@ pub const ALBEDO_PUBLISHED_SOFT: Surface = [
 
 /// Albedo of the published fit: degree 12 in the cube root, 8 in log r.
 #[rustfmt::skip]
-pub const ALBEDO_PUBLISHED: Surface = [
+pub const ALBEDO_PUBLISHED: CurveFit = [
     [0.493_964_43, 0.067_411_22, 0.047_669_847, -0.010_021_452, -0.007_915_878, -0.003_350_309, -0.000_967_379_66, -0.000_192_369_32, -1.637_927_4e-5],
     [-0.440_199_85, 0.086_351_61, -0.041_781_805, 0.008_283_25, 0.005_116_481_3, 0.002_842_055_2, 0.001_018_450_7, 0.000_230_623_79, 1.855_193e-5],
     [-0.062_143_594, -0.049_540_877, 0.016_311_657, 5.080_738_6e-5, 0.000_948_188_94, 0.000_101_415_39, -3.664_130_4e-5, -3.360_541_8e-5, -8.819_645e-6],
@@ -115,7 +124,7 @@ pub const ALBEDO_PUBLISHED: Surface = [
 
 /// Albedo of Ashikhmin's visibility: degree 12 in the cube root, 8 in log r.
 #[rustfmt::skip]
-pub const ALBEDO_ASHIKHMIN: Surface = [
+pub const ALBEDO_ASHIKHMIN: CurveFit = [
     [0.566_814_9, -0.175_396_37, 0.038_944_006, -0.003_730_294, -8.735_636e-5, 1.688_783e-5, 1.463_948_3e-5, -2.165_411_8e-6, -6.944_531_5e-7],
     [-0.551_395_4, 0.351_280_18, -0.059_655_69, 0.004_449_784_8, -0.000_531_540_54, 0.000_112_458_08, 1.877_826_3e-5, -6.705_869e-6, -1.334_948_6e-6],
     [-0.009_068_701, -0.052_701_246, 0.032_545_492, -0.006_591_582_7, 7.208_332e-5, 8.917_476e-5, 2.623_518_4e-5, -7.267_270_6e-6, -1.534_347_5e-6],
@@ -135,7 +144,7 @@ pub const ALBEDO_ASHIKHMIN: Surface = [
 /// error at 400 held-out points 2.1e-4.
 #[rustfmt::skip]
 #[allow(clippy::excessive_precision, clippy::unreadable_literal, reason = "printed by the fit")]
-pub const ALBEDO_VELVET: Surface = [
+pub const ALBEDO_VELVET: CurveFit = [
     [0.45100605487823486, -0.000339951686328277, -0.04676271602511406, -0.015133209526538849, 0.0035655307583510876, 0.0032923631370067596, 0.0003596165042836219, -0.0003718179650604725, -0.00015063943283166736],
     [-0.28014707565307617, -0.03525179624557495, 0.08183162659406662, 0.03735725209116936, 4.667935718316585e-05, -0.004561425186693668, -0.0010283351875841618, 0.0003377480898052454, 0.00019295017409604043],
     [0.003489870810881257, -0.04515792429447174, -0.02346727065742016, 0.008074012584984303, 0.008368654176592827, 0.0015392358181998134, -0.0007169313612394035, -0.0004174813802819699, -3.1372423109132797e-05],
@@ -168,7 +177,7 @@ pub const SHADOWING_SERIES: [[f32; SERIES_COLUMNS]; SERIES] = [
 
 /// Albedo of the exact term: degree 12 in the cube root, 8 in log r; error at 300 held-out points 2.7e-6.
 #[rustfmt::skip]
-pub const ALBEDO_EXACT_LONG: Surface = [
+pub const ALBEDO_EXACT_LONG: CurveFit = [
     [0.539_278_75, 0.087_313_87, -0.000_852_616_56, -0.002_136_408_8, -0.000_278_504_04, 0.000_101_163_816, 2.833_153_8e-5, -5.814_274_6e-6, -2.427_142_6e-6],
     [-0.516_830_3, 0.064_224_98, 0.011_207_836, -0.002_993_897_5, -0.000_814_015_2, 0.000_138_591_63, 6.578_983_4e-5, -8.316_422e-6, -5.327_478_4e-6],
     [-0.004_463_050_5, -0.049_923_424, 0.017_054_757, 0.000_213_184_15, -0.001_021_748_3, 3.984_958_3e-6, 7.221_629_5e-5, -1.285_936_3e-6, -5.701_066e-6],
@@ -187,7 +196,7 @@ pub const ALBEDO_EXACT_LONG: Surface = [
 /// Albedo of the exact term with softened terminator: degree 12 in the cube root, 8 in log r; error at 300 held-out points
 /// 2.3e-5, 3.2e-5 in the corner of r = 0.06 and cosine 1e-4.
 #[rustfmt::skip]
-pub const ALBEDO_EXACT_SOFT_LONG: Surface = [
+pub const ALBEDO_EXACT_SOFT_LONG: CurveFit = [
     [0.482_468_55, 0.112_134_77, -0.005_677_577_6, -0.001_745_756_8, -0.000_261_592_6, 8.954_874e-5, 3.048_219_3e-5, -5.399_962_4e-6, -2.714_070_7e-6],
     [-0.468_003_93, 0.031_298_853, 0.018_973_377, -0.003_748_789_4, -0.000_833_807_2, 0.000_136_063_32, 6.924_364_4e-5, -7.465_476_8e-6, -5.923_229_3e-6],
     [0.014_569_204, -0.056_791_05, 0.016_635_308, 0.001_017_922_2, -0.001_199_294_2, -4.620_159_5e-7, 7.840_004_4e-5, -6.359_593_4e-7, -6.324_365e-6],

@@ -25,12 +25,14 @@ pub mod normals;
 pub mod reference;
 pub mod sampling;
 pub mod shadowing;
+pub mod term;
 
-use super::{Eval, Params, Scatter, View, select};
+use super::{Choice, Eval, Params, Scatter, View, select};
 use albedo::AlbedoCurve;
 use glam::Vec3;
 use sampling::{Azimuth, Proposal};
-use shadowing::{Exact, Published, Series, Shadowing, soften};
+use shadowing::{Exact, Published, Series, soften};
+use term::Shadowing;
 
 /// Index of [`Shadowing::Exact`] as a constant parameter.
 pub const EXACT: u8 = 0;
@@ -44,6 +46,7 @@ pub const SERIES: u8 = 3;
 /// The sheen lobe with F = 1, for one shadowing term and with or without the softened terminator.
 ///
 /// Source: Estevez and Kulla 2017, eq. 1 to 4: f = D G / (4 cos_o cos_i).
+/// Parameter: roughness. Choice: [`sampling::SheenSampling`].
 /// Domain: roughness, clamped to 0.01..1; both directions above the horizon, else 0. Gives: f cos in 1/sr.
 /// Degenerate cases: grazing light gives 0, grazing view a finite f cos (exact term); opposite directions in the horizon 0.
 /// Reciprocal without softening. The visibility of Ashikhmin has no Lambda, so softening does not change it.
@@ -107,11 +110,12 @@ impl<const SHADOWING: u8, const SOFT: bool> Sheen<SHADOWING, SOFT> {
 }
 
 impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
-    const PARAMS: usize = 3;
+    const PARAMS: usize = 1;
+    const SHEEN: Option<bool> = if Self::TERM.is_exact() { Some(SOFT) } else { None };
     const VIEW: usize = 5;
 
     #[inline(always)]
-    fn prepare([roughness, uniform_share, plain, ..]: Params) -> Self {
+    fn prepare([roughness, ..]: Params) -> Self {
         let r = charlie::clamp_roughness(roughness);
         let n = 1.0 / r;
         Sheen {
@@ -120,8 +124,13 @@ impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
             published: if SHADOWING == PUBLISHED { Published::new(r) } else { Published::NONE },
             series: if SHADOWING == SERIES { Series::new(n) } else { Series::NONE },
             albedo: AlbedoCurve::new(Self::TERM, SOFT, r),
-            proposal: Proposal::new(Self::TERM, SOFT, r, uniform_share, plain),
+            proposal: Proposal::new(Self::TERM, SOFT, r),
         }
+    }
+
+    #[inline(always)]
+    fn choose(self, choice: Choice) -> Self {
+        Sheen { proposal: self.proposal.by(choice.into()), ..self }
     }
 
     #[inline(always)]

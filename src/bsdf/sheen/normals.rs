@@ -17,7 +17,8 @@ use glam::Vec3;
 pub struct ByNormals<const SHADOWING: u8, const SOFT: bool>(Sheen<SHADOWING, SOFT>);
 
 impl<const SHADOWING: u8, const SOFT: bool> Scatter for ByNormals<SHADOWING, SOFT> {
-    const PARAMS: usize = 3;
+    const PARAMS: usize = 1;
+    const SHEEN: Option<bool> = Sheen::<SHADOWING, SOFT>::SHEEN;
     const VIEW: usize = 5;
 
     #[inline(always)]

@@ -10,9 +10,9 @@
 //! the uniform part bounds the weights at 5.8 albedos (23 without it).
 
 use super::fits::{ProposalFit, proposal_fit};
-use super::shadowing::Shadowing;
+use super::term::Shadowing;
 use crate::bsdf::power::exp;
-use crate::bsdf::select;
+use crate::bsdf::{Choice, select};
 use crate::math::warp::{cosine_hemisphere, uniform_hemisphere, uniform_hemisphere_pdf};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
@@ -41,13 +41,22 @@ impl SheenSampling {
         ("cosine", SheenSampling::Cosine),
         ("normals", SheenSampling::Normals),
     ];
+}
 
-    /// The second and third parameter of [`super::Sheen`] for the scheme; the half vector has a model of its own.
-    pub fn params(self) -> [f32; 2] {
-        match self {
-            SheenSampling::Proposal => [0.1, 0.0],
-            SheenSampling::Uniform => [1.0, 0.0],
-            SheenSampling::Cosine | SheenSampling::Normals => [0.0, 1.0],
+impl From<SheenSampling> for Choice {
+    fn from(scheme: SheenSampling) -> Self {
+        Choice(scheme as u8)
+    }
+}
+
+impl From<Choice> for SheenSampling {
+    #[inline(always)]
+    fn from(Choice(number): Choice) -> Self {
+        match number {
+            0 => SheenSampling::Proposal,
+            1 => SheenSampling::Uniform,
+            2 => SheenSampling::Cosine,
+            _ => SheenSampling::Normals,
         }
     }
 }
@@ -102,13 +111,24 @@ pub struct Azimuth {
 }
 
 impl Proposal {
-    /// The sampler of a roughness; `plain` 1 leaves the cosine untransformed.
+    /// The sampler of a roughness, by default.
     #[inline(always)]
-    pub fn new(term: Shadowing, soft: bool, r: f32, uniform_share: f32, plain: f32) -> Self {
+    pub fn new(term: Shadowing, soft: bool, r: f32) -> Self {
         let ProposalFit { log_a, b } = proposal_fit(term, soft);
         let y = r.max(0.06).sqrt();
-        let ([a0, a1, a2], [b0, b1, b2]) = (collapse(log_a, y), collapse(b, y));
-        let keep = 1.0 - plain;
+        Proposal { log_a: collapse(log_a, y), b: collapse(b, y), uniform_share: 0.1 }
+    }
+
+    /// The same sampler by a scheme; the half vector has a model of its own.
+    #[inline(always)]
+    pub fn by(self, scheme: SheenSampling) -> Self {
+        // Untransformed, the cosine is left. Numbers and no branches, for the lane loops.
+        let (uniform_share, keep) = match scheme {
+            SheenSampling::Proposal => (0.1, 1.0),
+            SheenSampling::Uniform => (1.0, 1.0),
+            SheenSampling::Cosine | SheenSampling::Normals => (0.0, 0.0),
+        };
+        let ([a0, a1, a2], [b0, b1, b2]) = (self.log_a, self.b);
         Proposal { log_a: [keep * a0, keep * a1, keep * a2], b: [keep * b0, keep * b1, keep * b2], uniform_share }
     }
 

@@ -45,7 +45,7 @@ pub fn lobes(text: &str, settings: Settings, lanes: usize) -> Result<Lobes, Stri
     let mut machine = Machine::new();
     let tree = machine.shade(&group, &points(lanes));
     let mut lobes = Lobes::new(settings);
-    lobes.flatten(group.table(), tree, &hemisphere(lanes, 1), &Column3::splat(Vec3::Z, lanes));
+    lobes.flatten(group.library(), tree, &hemisphere(lanes, 1), &Column3::splat(Vec3::Z, lanes));
     Ok(lobes)
 }
 

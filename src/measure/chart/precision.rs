@@ -87,7 +87,7 @@ fn methods(r: f64) -> [Run; 4] {
     let n = 1.0 / r as f32;
     let exact = Exact::new(n);
     [
-        boxed(Engine(Sheen::prepare(params([r as f32, 0.1])))),
+        boxed(Engine(Sheen::prepare(params([r as f32])))),
         boxed(General::<false> { n, exact }),
         boxed(General::<true> { n, exact }),
         boxed(Doubles(f64::from(r as f32))),

@@ -28,20 +28,25 @@ struct Tried {
 #[derive(Clone, Debug)]
 enum Values {
     Numbers(Vec<f32>),
-    Words(&'static [&'static str]),
+    Words(Vec<&'static str>),
 }
 
 impl Tried {
     /// What is tried of a parameter; nothing when the table gives no reason to.
     fn of(param: &ParamSpec) -> Option<Tried> {
         let index = param.kind == ParamKind::Float && (param.name.starts_with("eta") || param.name == "ior");
-        let values = match param.kind {
-            ParamKind::String if !param.choices.is_empty() => Values::Words(param.choices),
-            ParamKind::Float | ParamKind::Int | ParamKind::Color | ParamKind::Vector if !param.sweep.is_empty() => {
-                Values::Numbers(param.sweep.to_vec())
-            }
-            _ if index => Values::Numbers(INDICES.to_vec()),
-            _ => return None,
+        let swept = match param.kind {
+            ParamKind::Float | ParamKind::Int | ParamKind::Color | ParamKind::Vector => param.sweep,
+            ParamKind::String | ParamKind::Normal | ParamKind::Closure => &[],
+        };
+        let values = if !param.choices.is_empty() {
+            Values::Words(param.choices.clone())
+        } else if !swept.is_empty() {
+            Values::Numbers(swept.to_vec())
+        } else if index {
+            Values::Numbers(INDICES.to_vec())
+        } else {
+            return None;
         };
         Some(Tried { name: param.name, kind: param.kind, values })
     }
@@ -160,7 +165,7 @@ impl Subject for ClosureSubject {
         Promises {
             energy: self.promise(Claim::Energy, variant),
             reciprocity: self.promise(Claim::Reciprocity, variant),
-            layered: self.spec.params.iter().any(|param| param.kind == ParamKind::Closure),
+            layered: self.spec.nests(),
             lossless: self.spec.lossless,
         }
     }
@@ -193,15 +198,16 @@ fn source(spec: &ClosureSpec, tried: &[Tried]) -> String {
             ParamKind::Int => ("int", "0"),
             ParamKind::Color => ("color", "0"),
             ParamKind::Vector => ("vector", "0"),
-            _ => ("float", "0"),
+            ParamKind::Normal => ("normal", "0"),
+            ParamKind::Closure => ("closure color", "0"),
+            ParamKind::Float => ("float", "0"),
         };
         format!("{ty} {} = {value}", parameter(tried.name))
     };
     let is_tried = |param: &ParamSpec| tried.iter().any(|t| t.name == param.name);
     let nested = spec.params.iter().filter(|param| param.kind == ParamKind::Closure).count();
     let mut tops = nested.saturating_sub(1);
-    let mut value = |param: &ParamSpec| match param.kind {
-        _ if is_tried(param) => parameter(param.name),
+    let mut untried = |kind: ParamKind| match kind {
         ParamKind::Normal => "N".to_owned(),
         ParamKind::Vector => "dPdu".to_owned(),
         ParamKind::Color => "color(1)".to_owned(),
@@ -215,7 +221,8 @@ fn source(spec: &ClosureSpec, tried: &[Tried]) -> String {
         }
         ParamKind::Closure => "diffuse(N)".to_owned(),
     };
-    let mut arguments: Vec<String> = spec.params.iter().map(&mut value).collect();
+    let value = |param: &ParamSpec| if is_tried(param) { parameter(param.name) } else { untried(param.kind) };
+    let mut arguments: Vec<String> = spec.params.iter().map(value).collect();
     for keyword in spec.keywords.iter().filter(|keyword| is_tried(keyword)) {
         arguments.push(format!("{:?}, {}", keyword.name, parameter(keyword.name)));
     }

@@ -62,7 +62,7 @@ impl Scatterer for TreeScatterer {
     fn look(&mut self, wo: &Column3) {
         self.spot.points(wo, &mut self.points);
         let tree = self.machine.shade(&self.group, &self.points);
-        self.lobes.flatten(self.group.table(), tree, wo, &self.points.ng);
+        self.lobes.flatten(self.group.library(), tree, wo, &self.points.ng);
         if let (Some(dropped), None) = (self.lobes.dropped().first(), &self.complaint) {
             let place = tree.site(dropped.node).map_or(String::new(), |site| format!("{}: ", self.group.place(site)));
             self.complaint = Some(format!("{place}`{}` has a parameter or weight that is no number", dropped.closure));

@@ -29,8 +29,8 @@ impl Writer<'_> {
             Unary::Expm1 => self.bin(Binary::Add, y, one),
             Unary::Log => self.bin(Binary::Div, one, a),
             Unary::Log2 | Unary::Log10 => {
-                let base: f32 = if op == Unary::Log2 { 2.0 } else { 10.0 };
-                let scale = self.constant(1.0 / base.ln());
+                let log_of_base = if op == Unary::Log2 { std::f32::consts::LN_2 } else { std::f32::consts::LN_10 };
+                let scale = self.constant(1.0 / log_of_base);
                 self.bin(Binary::Div, scale, a)
             }
             Unary::Sin => self.un(Unary::Cos, a),

@@ -1,6 +1,6 @@
-//! Media: the directions under a clear coat, which bends them, and what is lost on the way in and out.
+//! Coats: the directions under a clear coat, which bends them, and what is lost on the way in and out.
 //!
-//! A coat has a refracting boundary and an absorbing inside. Each medium keeps the viewer's and the light's direction as they
+//! A coat has a refracting boundary and an absorbing inside. Each keeps the viewer's and the light's direction as they
 //! run inside it, so the lobes below are evaluated there as if nothing lay above. Light that leaves on the other side of
 //! the surface does not cross the coat again.
 //!
@@ -14,10 +14,11 @@
 //! glossy base, whose lobe the boundary widens. So diffuse lobes follow the paper, and all others keep the energy of
 //! their lobe (f / eta²), instead of one rule for both.
 
-use super::batch::{LobeColumns, Triples};
-use super::surfaces::FrameColumns;
+use super::batch::LobeColumns;
+use super::frames::FrameColumns;
+use super::source::Triples;
 use crate::bsdf::fresnel::{Dielectric, Fresnel, dielectric};
-use crate::bsdf::microfacet::distribution::Distribution;
+use crate::bsdf::microfacet::albedo::FacetTable;
 use crate::bsdf::microfacet::{Geometry, Ggx, MIN_ALPHA};
 use crate::bsdf::{params, select};
 use crate::lanes;
@@ -28,10 +29,10 @@ use glam::Vec3;
 /// The largest ratio of solid angles or cosines that coats in coats may come to, far beyond any that light passes.
 const MOST_RATIO: f32 = 1e8;
 
-/// One medium.
+/// One coat over what lies under it.
 #[derive(Debug, Default)]
-pub struct Medium {
-    /// The medium around it, or [`super::surfaces::NONE`]; always an earlier one.
+pub struct Coat {
+    /// The coat around it, or [`super::store::NONE`]; always an earlier one.
     pub parent: u32,
     /// The frame whose normal the coat has.
     frame: u32,
@@ -49,21 +50,21 @@ pub struct Medium {
     pub pass_o: Vec<f32>,
     /// The same on the light's side.
     pub pass_i: Vec<f32>,
-    /// What absorption leaves on the viewer's side, all media around included.
+    /// What absorption leaves on the viewer's side, all coats around included.
     pub tint_o: Column3,
     /// The same on the light's side.
     pub tint_i: Column3,
-    /// Solid angle inside over outside of the light's direction, all media around included.
+    /// Solid angle inside over outside of the light's direction, all coats around included.
     pub density: Vec<f32>,
-    /// Cosine outside over inside of the light's direction, all media around included.
+    /// Cosine outside over inside of the light's direction, all coats around included.
     pub spread: Vec<f32>,
-    /// True when it, or a medium around it, absorbs.
+    /// True when it, or a coat around it, absorbs.
     pub colored: bool,
 }
 
-/// What a medium is made from.
+/// What a coat is made from.
 #[derive(Debug)]
-pub struct Coat {
+pub struct Coating {
     /// The frame of its boundary.
     pub frame: u32,
     /// Index of refraction inside over outside.
@@ -74,13 +75,13 @@ pub struct Coat {
     pub depth: Option<Column3>,
 }
 
-/// All media of a batch.
+/// All coats of a batch.
 #[derive(Debug, Default)]
-pub struct Media {
-    list: Vec<Medium>,
+pub struct Coats {
+    list: Vec<Coat>,
 }
 
-impl Media {
+impl Coats {
     /// Empties the store.
     pub fn clear(&mut self) {
         self.list.clear();
@@ -91,50 +92,49 @@ impl Media {
         self.list.is_empty()
     }
 
-    /// The medium of an index, unless it is [`super::surfaces::NONE`].
-    pub fn get(&self, medium: u32) -> Option<&Medium> {
-        self.list.get(medium as usize)
+    /// The coat of an index, unless it is [`super::store::NONE`].
+    pub fn get(&self, coat: u32) -> Option<&Coat> {
+        self.list.get(coat as usize)
     }
 
-    /// Adds the medium under a coat, with what the viewer decides, and gives its index.
-    pub fn push(&mut self, parent: u32, coat: Coat, frames: &[FrameColumns], wo: &Column3) -> u32 {
+    /// Adds the coat under a coat, with what the viewer decides, and gives its index.
+    pub fn push(&mut self, parent: u32, coating: Coating, frames: &[FrameColumns], wo: &Column3) -> u32 {
         let n = wo.len();
-        let Coat { frame, mut eta, alpha, depth } = coat;
+        let Coating { frame, mut eta, alpha, depth } = coating;
         for value in &mut eta {
             *value = if value.is_finite() { value.min(1e3) } else { 1.0 };
         }
         let outer = self.get(parent);
         let colored = depth.is_some() || outer.is_some_and(|m| m.colored);
-        let mut medium = Medium { parent, frame, eta, alpha, depth, colored, ..Medium::default() };
-        for column in [&mut medium.wo, &mut medium.wi, &mut medium.tint_o, &mut medium.tint_i] {
+        let mut coat = Coat { parent, frame, eta, alpha, depth, colored, ..Coat::default() };
+        for column in [&mut coat.wo, &mut coat.wi, &mut coat.tint_o, &mut coat.tint_i] {
             column.resize(n);
         }
-        for column in [&mut medium.pass_o, &mut medium.pass_i, &mut medium.density, &mut medium.spread] {
+        for column in [&mut coat.pass_o, &mut coat.pass_i, &mut coat.density, &mut coat.spread] {
             column.resize(n, 1.0);
         }
-        let from = Crossing { normal: Triples::of(&frames[frame as usize].normal), eta: &medium.eta };
+        let from = Crossing { normal: Triples::of(&frames[frame as usize].normal), eta: &coat.eta };
         let above = Triples::of(outer.map_or(wo, |m| &m.wo));
-        let w = &mut medium.wo;
+        let w = &mut coat.wo;
         // The viewer's solid angle and spread are not needed; their columns are filled anew with every light.
-        let (density, spread) = (&mut medium.density, &mut medium.spread);
-        enter_lanes(from, above, &mut w.x, &mut w.y, &mut w.z, &mut medium.pass_o, density, spread);
-        pass_facets(from, above, medium.alpha.as_deref(), &mut medium.pass_o);
+        let (density, spread) = (&mut coat.density, &mut coat.spread);
+        enter_lanes(from, above, &mut w.x, &mut w.y, &mut w.z, &mut coat.pass_o, density, spread);
+        pass_facets(from, above, coat.alpha.as_deref(), &mut coat.pass_o);
         for lane in 0..n {
             let around = outer.filter(|m| m.colored).map_or(Vec3::ONE, |m| m.tint_o.get(lane));
-            let cos = frames[frame as usize].normal.get(lane).dot(medium.wo.get(lane));
-            medium.tint_o.set(lane, around * absorption(medium.depth.as_ref(), lane, cos));
+            let cos = frames[frame as usize].normal.get(lane).dot(coat.wo.get(lane));
+            coat.tint_o.set(lane, around * absorption(coat.depth.as_ref(), lane, cos));
         }
-        self.list.push(medium);
+        self.list.push(coat);
         self.list.len() as u32 - 1
     }
 
-    /// Brings the light's directions into every medium.
+    /// Brings the light's directions into every coat.
     pub fn light(&mut self, frames: &[FrameColumns], wi: &Column3) {
         for index in 0..self.list.len() {
             let (before, rest) = self.list.split_at_mut(index);
-            let Medium {
-                parent, frame, eta, alpha, depth, wi: inside, tint_i, pass_i, density, spread, colored, ..
-            } = &mut rest[0];
+            let Coat { parent, frame, eta, alpha, depth, wi: inside, tint_i, pass_i, density, spread, colored, .. } =
+                &mut rest[0];
             let outer = before.get(*parent as usize);
             let from = Crossing { normal: Triples::of(&frames[*frame as usize].normal), eta };
             let above = Triples::of(outer.map_or(wi, |m| &m.wi));
@@ -154,12 +154,12 @@ impl Media {
         }
     }
 
-    /// The direction outside of all media that a direction in one becomes; zero when a boundary throws it back.
-    pub fn leave(&self, medium: u32, frames: &[FrameColumns], lane: usize, wi: Vec3) -> Vec3 {
-        let (mut wi, mut at) = (wi, medium);
-        while let Some(medium) = self.get(at) {
-            let n = frames[medium.frame as usize].normal.get(lane);
-            let (cos, eta) = (n.dot(wi), medium.eta[lane].max(1e-3));
+    /// The direction outside of all coats that a direction in one becomes; zero when a boundary throws it back.
+    pub fn leave(&self, coat: u32, frames: &[FrameColumns], lane: usize, wi: Vec3) -> Vec3 {
+        let (mut wi, mut at) = (wi, coat);
+        while let Some(coat) = self.get(at) {
+            let n = frames[coat.frame as usize].normal.get(lane);
+            let (cos, eta) = (n.dot(wi), coat.eta[lane].max(1e-3));
             if cos > 0.0 {
                 let outside = 1.0 - eta * eta * (1.0 - cos * cos).max(0.0);
                 if outside <= 0.0 {
@@ -168,24 +168,24 @@ impl Media {
                 wi = (wi - n * cos) * eta + n * outside.sqrt();
                 wi *= 1.0 / wi.length();
             }
-            at = medium.parent;
+            at = coat.parent;
         }
         wi
     }
 }
 
-impl Medium {
-    /// What absorption leaves on the viewer's side, all media around included.
+impl Coat {
+    /// What absorption leaves on the viewer's side, all coats around included.
     pub fn viewer_tint(&self, lane: usize) -> Vec3 {
         if self.colored { self.tint_o.get(lane) } else { Vec3::ONE }
     }
 
-    /// What absorption leaves on the way in and out, all media around included.
+    /// What absorption leaves on the way in and out, all coats around included.
     pub fn tint(&self, lane: usize) -> Vec3 {
         if self.colored { self.tint_o.get(lane) * self.tint_i.get(lane) } else { Vec3::ONE }
     }
 
-    /// The weight, scale and probability of a lobe, brought from this medium to the outside, as five columns.
+    /// The weight, scale and probability of a lobe, brought from this coat to the outside, as five columns.
     pub fn carry(&self, from: &LobeColumns, diffuse: bool, out: &mut Vec<f32>) {
         let n = self.density.len();
         out.resize(5 * n, 0.0);
@@ -233,7 +233,7 @@ fn pass_facets(from: Crossing, outside: Triples, alpha: Option<&[f32]>, pass: &m
         let cos = from.normal.at(lane).dot(outside.at(lane));
         if alpha[lane] >= MIN_ALPHA && cos > 0.0 && *pass > 0.0 {
             let fresnel = Dielectric::prepare(params([from.eta[lane]]), 0);
-            let reflected = Ggx::table(Geometry::Smith).color(&fresnel, alpha[lane].min(1.0), cos.min(1.0));
+            let reflected = FacetTable::of::<Ggx>(Geometry::Smith).color(&fresnel, alpha[lane].min(1.0), cos.min(1.0));
             *pass = 1.0 - reflected.x;
         }
     }
@@ -262,7 +262,7 @@ lanes! {
             let above = cos > 0.0;
             let inverse = 1.0 / eta.max(1e-3);
             let inner2 = 1.0 - inverse * inverse * (1.0 - cos * cos).max(0.0);
-            // Into a lighter medium some light does not come in at all.
+            // Into a lighter coat some light does not come in at all.
             let lost = above && inner2 <= 1e-6;
             let inner = inner2.max(1e-6).sqrt();
             let bent = (w - m * cos) * inverse + m * inner;
