@@ -3,8 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use velour::closure::print::tree_text;
 use velour::compile::{Compiler, Shader};
-use velour::exec::{Group, Machine, Points, Report};
-use velour::ir::program::{Kind, OutputValue, Reg};
+use velour::exec::{Group, Machine, Points, ReportKind, Values};
 use velour::ir::verify::verify;
 
 const POINTS: usize = 6;
@@ -37,12 +36,9 @@ fn float_bits(x: f32) -> u64 {
     if x.is_nan() { 0x7fc0_0000 } else { x.to_bits() as u64 }
 }
 
-fn number(machine: &Machine, group: &Group, reg: Reg, lane: usize) -> u64 {
-    match group.program().kind(reg) {
-        Kind::Float => float_bits(machine.float(group, reg, lane)),
-        Kind::Int | Kind::String => machine.int(group, reg, lane) as u64,
-        Kind::Closure => 0,
-    }
+/// A number that is the same for equal texts.
+fn hash(text: &str) -> u64 {
+    text.bytes().fold(1, |sum, byte| sum.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(byte))
 }
 
 fn seen(group: &Group, width: usize) -> Seen {
@@ -55,25 +51,20 @@ fn seen(group: &Group, width: usize) -> Seen {
         let tree = machine.shade(group, &points(first, len));
         seen.trees.extend((0..len).map(|lane| tree_text(group.table(), tree, lane)));
         for report in machine.take_reports() {
-            match report {
-                Report::Output(text) => seen.printed.push(text),
+            match report.kind {
+                ReportKind::Output => seen.printed.push(report.text),
                 // What is said once a batch depends on the width by design.
-                Report::Error(_) | Report::Warning(_) | Report::File(..) => {}
-                Report::Fatal(text) => panic!("{text}"),
+                ReportKind::Error | ReportKind::Mistake | ReportKind::Warning | ReportKind::File(_) => {}
+                ReportKind::Fatal => panic!("{report}"),
             }
         }
         for lane in 0..len {
             for output in &group.program().outputs {
-                match &output.value {
-                    OutputValue::Regs(regs) => {
-                        seen.bits.extend(regs.iter().map(|&reg| number(&machine, group, reg, lane)));
-                    }
-                    OutputValue::Array(id) => {
-                        let info = group.program().arrays[id.0 as usize];
-                        let count = (info.len * info.components) as usize;
-                        let numbers = (0..count).map(|n| machine.array_number(group, *id, n, lane));
-                        seen.bits.extend(numbers.map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
-                    }
+                match machine.output(group, &output.name).unwrap().lane(lane) {
+                    Values::Floats(values) => seen.bits.extend(values.iter().map(|&x| float_bits(x))),
+                    Values::Ints(values) => seen.bits.extend(values.iter().map(|&x| x as u64)),
+                    Values::Strings(values) => seen.bits.extend(values.iter().map(|text| hash(text))),
+                    Values::Closures(values) => seen.bits.push(values.len() as u64),
                 }
             }
         }
@@ -97,7 +88,7 @@ fn compare(shader: &Shader) -> Option<String> {
     let plain = shader.group().keep_outputs().unoptimized().build().unwrap();
     let best = shader.group().keep_outputs().build().unwrap();
     for group in [&plain, &best] {
-        if let Err(problem) = verify(group.program()) {
+        if let Err(problem) = verify(group.program(), group.table()) {
             return Some(format!("{problem:?}"));
         }
     }

@@ -305,7 +305,9 @@ impl Writer<'_> {
             }
             Instr::Call { routine, dst, src, span } => self.call_slope(routine, dst, src, span),
             // What has no slope is never asked for one; see `Needs::instr`.
-            Instr::Derivative(..) | Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => self.emit(instr),
+            Instr::Derivative(..) | Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => {
+                self.emit(instr)
+            }
             Instr::Compare(..) | Instr::Test(..) | Instr::IntUnary(..) | Instr::IntBinary(..) => self.emit(instr),
             Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => self.emit(instr),
             Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => self.emit(instr),
