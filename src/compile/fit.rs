@@ -147,7 +147,7 @@ pub(super) fn param_error(layer: &Layer, name: &str, problem: GroupProblem) -> G
 #[cfg(test)]
 mod tests {
     use crate::compile::{Compiler, GroupBuilder};
-    use crate::exec::{Machine, Points, Report};
+    use crate::exec::{Machine, Points};
 
     /// A shader with parameters of every shape, which prints them all.
     const SHAPES: &str = "struct T { color c; float w[2]; }; \
@@ -166,11 +166,7 @@ mod tests {
         let group = set(builder).build().map_err(|error| error.problem.to_string())?;
         let mut machine = Machine::new();
         machine.shade(&group, &Points::new(1));
-        Ok(machine
-            .take_reports()
-            .into_iter()
-            .map(|r| if let Report::Output(text) = r { text } else { String::new() })
-            .collect())
+        Ok(machine.take_reports().into_iter().map(|report| report.text).collect())
     }
 
     #[test]

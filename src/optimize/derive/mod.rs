@@ -1,11 +1,13 @@
 //! Derivatives: forward differentiation of exactly the values whose derivatives are read.
 //!
-//! A first walk, repeated until nothing changes, finds the registers that matter: sources of [`Instr::Derivative`] and
-//! whatever they are computed from. A second walk writes, after each instruction that computes such a register, the
+//! A search finds the registers that matter: sources of [`Instr::Derivative`] and whatever they are computed from. A walk
+//! writes, after each instruction that computes such a register, the
 //! instructions for its two derivatives. What has no derivative (ints, strings, constants, steps) counts as zero.
 
+mod calls;
 mod rules;
 
+use super::flow::Flow;
 use crate::ir::op::*;
 use crate::ir::program::*;
 use crate::lang::globals::Global;
@@ -13,12 +15,7 @@ use std::collections::HashMap;
 
 /// Replaces every [`Instr::Derivative`] by the derivative itself.
 pub fn expand(program: &mut Program) {
-    let mut needs =
-        Needs { regs: vec![false; program.regs.len()], arrays: vec![false; program.arrays.len()], changed: true };
-    while needs.changed {
-        needs.changed = false;
-        needs.block(&program.body);
-    }
+    let needs = Needs::of(program);
     if !needs.regs.contains(&true) && !has_derivatives(&program.body) {
         return;
     }
@@ -38,33 +35,42 @@ fn has_derivatives(block: &Block) -> bool {
 struct Needs {
     regs: Vec<bool>,
     arrays: Vec<bool>,
-    changed: bool,
+    /// What has been found to matter, and where that is computed has not been looked at.
+    open_regs: Vec<Reg>,
+    open_arrays: Vec<ArrayId>,
 }
 
 impl Needs {
-    /// Walks from the last instruction to the first, so that one walk does for straight code.
-    fn block(&mut self, block: &Block) {
-        for node in block.iter().rev() {
-            match node {
-                Node::Instr(instr) => self.instr(instr),
-                Node::If(_, a, b) => {
-                    self.block(b);
-                    self.block(a);
+    /// What matters in a program: from the sources of derivatives back to what they are computed from.
+    fn of(program: &Program) -> Self {
+        let flow = Flow::of(program);
+        let (regs, arrays) = (vec![false; program.regs.len()], vec![false; program.arrays.len()]);
+        let mut needs = Needs { regs, arrays, open_regs: Vec::new(), open_arrays: Vec::new() };
+        for placed in &flow.nodes {
+            if let Node::Instr(instr @ Instr::Derivative(..)) = placed.node {
+                needs.instr(instr);
+            }
+        }
+        loop {
+            let computed = if let Some(reg) = needs.open_regs.pop() {
+                flow.writers.of(reg.0)
+            } else if let Some(array) = needs.open_arrays.pop() {
+                flow.setters.of(array.0)
+            } else {
+                return needs;
+            };
+            for node in computed {
+                if let Node::Instr(instr) = flow.nodes[node].node {
+                    needs.instr(instr);
                 }
-                Node::Loop { head, body, .. } => {
-                    self.block(body);
-                    self.block(head);
-                }
-                Node::Scope(_, body) => self.block(body),
-                Node::Leave(_) => {}
             }
         }
     }
 
     fn mark(&mut self, reg: Reg) {
-        let slot = &mut self.regs[reg.0 as usize];
-        self.changed |= !*slot;
-        *slot = true;
+        if !std::mem::replace(&mut self.regs[reg.0 as usize], true) {
+            self.open_regs.push(reg);
+        }
     }
 
     fn instr(&mut self, instr: &Instr) {
@@ -83,7 +89,11 @@ impl Needs {
             return;
         }
         match instr {
-            Instr::Unary(op, _, a) if !is_step(*op) => self.mark(*a),
+            Instr::Unary(op, _, a) => {
+                if !is_step(*op) {
+                    self.mark(*a);
+                }
+            }
             Instr::Binary(Binary::Step, ..) => {}
             Instr::Binary(_, _, a, b) | Instr::Select(_, _, a, b) => {
                 self.mark(*a);
@@ -91,24 +101,36 @@ impl Needs {
             }
             Instr::Move { src, .. } => self.mark(*src),
             Instr::ArrayGet { array, .. } => {
-                let slot = &mut self.arrays[array.0 as usize];
-                self.changed |= !*slot;
-                *slot = true;
+                if !std::mem::replace(&mut self.arrays[array.0 as usize], true) {
+                    self.open_arrays.push(*array);
+                }
             }
-            Instr::Call { routine: Routine::Noise(noise), src, .. } if has_slope(noise.kind) => {
+            Instr::Call { routine, src, .. } => self.call(routine, src),
+            // There are no pairs yet, and the others write no floats or floats that are steps.
+            Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) | Instr::Compare(..) => {}
+            Instr::Test(..) | Instr::IntUnary(..) | Instr::IntBinary(..) => {}
+            // A second derivative is zero, as OSL has it. Arrays are dealt with above.
+            Instr::Derivative(..) | Instr::ArraySet { .. } => {}
+            Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => {}
+            Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => {}
+        }
+    }
+
+    fn call(&mut self, routine: &Routine, src: &[Reg]) {
+        let Declaration { takes, slopes, .. } = routine.declaration();
+        match (slopes, routine) {
+            (Slopes::Rule(_), _) => floats(&takes, src).for_each(|reg| self.mark(reg)),
+            (Slopes::Gradient, Routine::Noise(noise)) => {
                 src[..noise.dims as usize].iter().for_each(|&reg| self.mark(reg));
             }
-            Instr::Call { routine: Routine::Spline | Routine::SplineInverse, src, .. } => self.mark(src[1]),
-            Instr::Call { routine: Routine::TransformColor, src, .. } => {
-                src[2..].iter().for_each(|&reg| self.mark(reg))
-            }
-            _ => {}
+            (Slopes::Gradient | Slopes::Given | Slopes::None, _) => {}
         }
     }
 }
 
-fn has_slope(kind: NoiseKind) -> bool {
-    !matches!(kind, NoiseKind::Cell | NoiseKind::Hash)
+/// The float registers of a list.
+fn floats<'r>(kinds: &'r Kinds, regs: &'r [Reg]) -> impl Iterator<Item = Reg> + 'r {
+    each(kinds).zip(regs).filter(|(kind, _)| *kind == Kind::Float).map(|(_, &reg)| reg)
 }
 
 fn is_step(op: Unary) -> bool {
@@ -178,16 +200,26 @@ impl Writer<'_> {
         }
         let info = self.program.regs[reg.0 as usize];
         let slope = match info.source {
-            Source::Input(Input::Global(global @ (Global::P | Global::Ps | Global::I | Global::U | Global::V), c)) => {
-                [Some(self.input(Input::GlobalDx(global, c))), Some(self.input(Input::GlobalDy(global, c)))]
-            }
+            Source::Input(input) => self.input_slope(input),
             Source::Code if info.mutable && info.kind == Kind::Float => {
                 [Some(self.program.reg(Kind::Float, true)), Some(self.program.reg(Kind::Float, true))]
             }
-            _ => [None, None],
+            Source::Code | Source::Const(_) => [None, None],
         };
         self.slopes.insert(reg, slope);
         slope
+    }
+
+    /// The derivatives of an input: points have them for what moves along the surface.
+    fn input_slope(&mut self, input: Input) -> Slope {
+        let Input::Global(global, c) = input else { return [None, None] };
+        match global {
+            Global::P | Global::Ps | Global::I | Global::U | Global::V => {
+                [Some(self.input(Input::GlobalDx(global, c))), Some(self.input(Input::GlobalDy(global, c)))]
+            }
+            Global::N | Global::Ng | Global::DPdu | Global::DPdv => [None, None],
+            Global::Time | Global::Dtime | Global::DPdtime | Global::Ci => [None, None],
+        }
     }
 
     fn un(&mut self, op: Unary, a: Reg) -> Reg {
@@ -255,42 +287,30 @@ impl Writer<'_> {
                 self.slopes.insert(dst, slope);
             }
             Instr::Move { dst, src, .. } => self.move_slope(instr, dst, src),
-            Instr::ArrayGet { .. } | Instr::ArraySet { .. } => self.array_slope(instr),
-            Instr::Call { routine: Routine::Noise(noise), dst, src, span } if has_slope(noise.kind) => {
-                self.noise_slope(noise, dst, src, span);
-            }
-            Instr::Call { routine: Routine::Spline | Routine::SplineInverse, ref dst, ref src, .. } => {
-                let (value, slope_of_x, x) = (dst[0], dst[1], src[1]);
+            Instr::ArrayGet { dst, array, component, index, span } => {
                 self.emit(instr);
-                let slope = self.slope(x).map(|slope| self.mul(slope, slope_of_x));
-                self.slopes.insert(value, slope);
+                let slope = self.twins(array).map(|array| {
+                    let dst = self.program.reg(Kind::Float, false);
+                    self.emit(Instr::ArrayGet { dst, array, component, index, span });
+                    Some(dst)
+                });
+                self.slopes.insert(dst, slope);
             }
-            Instr::Call { routine: Routine::TransformColor, ref dst, ref src, span } => {
-                let (values, src) = (dst.clone(), src.clone());
+            Instr::ArraySet { array, component, index, src, masked, span } => {
                 self.emit(instr);
-                self.color_slope(&values, &src, span);
+                for (array, slope) in self.twins(array).into_iter().zip(self.slope(src)) {
+                    let src = slope.unwrap_or_else(|| self.zero());
+                    self.emit(Instr::ArraySet { array, component, index, src, masked, span });
+                }
             }
-            other => self.emit(other),
-        }
-    }
-
-    fn color_slope(&mut self, values: &[Reg], src: &[Reg], span: velour_grammar::Span) {
-        let from: Vec<Slope> = src[2..].iter().map(|&reg| self.slope(reg)).collect();
-        let mut slopes = [[None; 2]; 3];
-        for axis in 0..2 {
-            if from.iter().all(|slope| slope[axis].is_none()) {
-                continue;
+            Instr::Call { routine, dst, src, span } => self.call_slope(routine, dst, src, span),
+            // What has no slope is never asked for one; see `Needs::instr`.
+            Instr::Derivative(..) | Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => {
+                self.emit(instr)
             }
-            let moved: Vec<Reg> = from.iter().map(|slope| slope[axis].unwrap_or_else(|| self.zero())).collect();
-            let dst: Vec<Reg> = (0..3).map(|_| self.program.reg(Kind::Float, false)).collect();
-            for (slope, &reg) in slopes.iter_mut().zip(&dst) {
-                slope[axis] = Some(reg);
-            }
-            let src = src.iter().copied().chain(moved).collect();
-            self.emit(Instr::Call { routine: Routine::TransformColorSlope, dst, src, span });
-        }
-        for (&value, slope) in values.iter().zip(slopes) {
-            self.slopes.insert(value, slope);
+            Instr::Compare(..) | Instr::Test(..) | Instr::IntUnary(..) | Instr::IntBinary(..) => self.emit(instr),
+            Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => self.emit(instr),
+            Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => self.emit(instr),
         }
     }
 
@@ -346,55 +366,15 @@ impl Writer<'_> {
         out
     }
 
-    fn array_slope(&mut self, instr: Instr) {
-        let (Instr::ArrayGet { array, .. } | Instr::ArraySet { array, .. }) = instr else { return };
+    /// The arrays that hold the derivatives of an array's elements.
+    fn twins(&mut self, array: ArrayId) -> [ArrayId; 2] {
         let info = self.program.arrays[array.0 as usize];
         let program = &mut *self.program;
-        let twins = *self.arrays.entry(array).or_insert_with(|| {
+        *self.arrays.entry(array).or_insert_with(|| {
             [0, 1].map(|_| {
                 program.arrays.push(info);
                 ArrayId(program.arrays.len() as u32 - 1)
             })
-        });
-        self.emit(instr.clone());
-        match instr {
-            Instr::ArrayGet { dst, component, index, span, .. } => {
-                let slope = twins.map(|array| {
-                    let dst = self.program.reg(Kind::Float, false);
-                    self.emit(Instr::ArrayGet { dst, array, component, index, span });
-                    Some(dst)
-                });
-                self.slopes.insert(dst, slope);
-            }
-            Instr::ArraySet { component, index, src, masked, span, .. } => {
-                let from = self.slope(src);
-                for (array, slope) in twins.into_iter().zip(from) {
-                    let src = slope.unwrap_or_else(|| self.zero());
-                    self.emit(Instr::ArraySet { array, component, index, src, masked, span });
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// Asks the noise for its gradient as well and applies the chain rule.
-    fn noise_slope(&mut self, mut noise: Noise, mut dst: Vec<Reg>, src: Vec<Reg>, span: velour_grammar::Span) {
-        let (dims, outputs) = (noise.dims as usize, noise.outputs as usize);
-        noise.gradient = true;
-        let values = dst.clone();
-        dst.extend((0..dims * outputs).map(|_| self.program.reg(Kind::Float, false)));
-        let gradient = dst[outputs..].to_vec();
-        let inputs: Vec<Slope> = src[..dims].iter().map(|&reg| self.slope(reg)).collect();
-        self.emit(Instr::Call { routine: Routine::Noise(noise), dst, src, span });
-        for (o, value) in values.into_iter().enumerate() {
-            let mut slope = [None; 2];
-            for (axis, slot) in slope.iter_mut().enumerate() {
-                for d in 0..dims {
-                    let part = self.mul(inputs[d][axis], gradient[o * dims + d]);
-                    *slot = self.add(*slot, part);
-                }
-            }
-            self.slopes.insert(value, slope);
-        }
+        })
     }
 }
