@@ -1,10 +1,10 @@
 //! A host with a closure of its own: the model of Minnaert, which darkens toward the rim like the moon seen through dust.
 
-use glam::Vec3;
 use std::f32::consts::TAU;
 use velour::bsdf::{Eval, Params, Scatter, Spread, View};
 use velour::closure::{Argument, Layering, LeafMaker, LobeRequest};
 use velour::closure::{ClosureDef, Color, Float, Library, LobeKind, Nested, Normal, RegisterError, Word};
+use velour::glam::Vec3;
 use velour::lang::closures::{Claim, ParamSpec, TopAlbedo, Waiver};
 
 /// f = (k + 1) / (2 pi) (ci co)^(k - 1).

@@ -1,10 +1,10 @@
 //! A closure of a host's own compiles, prints, renders, is described and verified, from another crate.
 
-use glam::Vec3;
 use velour::closure::print::tree_text;
 use velour::closure::{ClosureDef, Library, Lobes, RegisterError, Samples, Settings};
 use velour::compile::Compiler;
 use velour::exec::{Group, Machine, Points};
+use velour::glam::Vec3;
 use velour::lang::describe::closure_text;
 use velour::math::columns::Column3;
 use velour::measure::furnace::{hemisphere, integrate};
