@@ -2,12 +2,12 @@
 //!
 //! `cargo run --release --example own_closure` writes `own_closure.png`, describes the closure, and verifies it.
 
-use glam::Vec3;
 use std::error::Error;
 use std::f32::consts::TAU;
 use velour::bsdf::{Eval, Params, Scatter, View};
 use velour::closure::{ClosureDef, Color, Float, Library, LobeKind, Normal};
 use velour::compile::Compiler;
+use velour::glam::Vec3;
 use velour::lang::closures::ParamSpec;
 use velour::lang::describe::closure_text;
 use velour::measure::verify::{ClosureSubject, Effort, verify};

@@ -13,15 +13,15 @@ use crate::span::Span;
 use crate::token::{Sym, Token};
 
 /// How deep brackets of any kind may nest.
-pub const MAX_BRACKETS: usize = 256;
+pub(crate) const MAX_BRACKETS: usize = 256;
 /// How many statements may hang on each other without braces.
-pub const MAX_CHAIN: usize = 2_000;
+pub(crate) const MAX_CHAIN: usize = 2_000;
 /// How many tokens a statement or a list element may have, nested ones included.
-pub const MAX_RUN: usize = 50_000;
+pub(crate) const MAX_RUN: usize = 50_000;
 
 /// A bracket that is never closed.
 #[derive(Clone, Copy, Debug)]
-pub struct Unclosed {
+pub(crate) struct Unclosed {
     /// The bracket.
     pub bracket: Sym,
     /// Its token.
@@ -29,7 +29,7 @@ pub struct Unclosed {
 }
 
 /// Marks the braces and semicolons that end items, and gives the brackets that are never closed.
-pub fn mark_items(tokens: &mut [Spanned<'_>], sources: &Sources) -> Vec<Unclosed> {
+pub(crate) fn mark_items(tokens: &mut [Spanned<'_>], sources: &Sources) -> Vec<Unclosed> {
     let unclosed = pair(tokens, |_| false);
     if unclosed.is_empty() {
         return unclosed;
@@ -91,7 +91,7 @@ struct Run {
 }
 
 /// Finds the first place where the text would make too deep a tree.
-pub fn too_deep(tokens: &[Spanned<'_>]) -> Option<Diagnostic> {
+pub(crate) fn too_deep(tokens: &[Spanned<'_>]) -> Option<Diagnostic> {
     // For each open bracket the run around it and the run at its last separator.
     let mut stack: Vec<(Run, Run)> = Vec::new();
     let (mut run, mut base) = (Run::default(), Run::default());

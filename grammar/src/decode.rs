@@ -4,7 +4,7 @@ use crate::preprocessor::scan::{Kind, scan};
 
 /// The text of a file, or `None` when it is no text: it has NUL bytes, or bytes that are not UTF-8 outside strings
 /// and comments.
-pub fn decode(bytes: &[u8]) -> Option<String> {
+pub(crate) fn decode(bytes: &[u8]) -> Option<String> {
     if bytes.contains(&0) || u32::try_from(bytes.len()).is_err() {
         return None;
     }

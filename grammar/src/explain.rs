@@ -10,7 +10,7 @@ use lalrpop_util::{ErrorRecovery, ParseError};
 use std::collections::HashSet;
 
 /// What the parser gives when it has skipped over a mistake.
-pub type Recovery<'s> = ErrorRecovery<u32, Token<'s>, ()>;
+pub(crate) type Recovery<'s> = ErrorRecovery<u32, Token<'s>, ()>;
 
 /// What stood where something else was expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ enum Found {
 
 /// A parse error without the tokens' lifetime.
 #[derive(Debug)]
-pub struct Failure {
+pub(crate) struct Failure {
     found: Found,
     span: Span,
     expected: Vec<String>,
@@ -79,7 +79,7 @@ const MAX_SHOWN: usize = 100;
 
 /// Turns failures into messages. One that follows closely on another, or on a message of the lexer, is its echo and
 /// left out.
-pub fn explain(failures: &[Failure], unclosed: &[Unclosed], sources: &Sources, diagnostics: &mut Diagnostics) {
+pub(crate) fn explain(failures: &[Failure], unclosed: &[Unclosed], sources: &Sources, diagnostics: &mut Diagnostics) {
     let reported: Vec<u32> =
         diagnostics.list.iter().filter(|d| d.code.starts_with("E02")).map(|d| d.span.first).collect();
     let mut quiet_until = None;
@@ -318,7 +318,7 @@ fn never_closed(open: Unclosed) -> Diagnostic {
 }
 
 /// Reports structs without the semicolon, which the grammar lets pass so that what follows is read.
-pub fn check_structs(items: &[Item], sources: &Sources, diagnostics: &mut Diagnostics) {
+pub(crate) fn check_structs(items: &[Item], sources: &Sources, diagnostics: &mut Diagnostics) {
     for item in items {
         let Item::Struct(decl) = item else { continue };
         let next = (decl.span.last + 1..).map_while(|i| sources.token(i)).find(|t| !t.aside);

@@ -11,10 +11,14 @@ use crate::span::Span;
 use crate::token::{Sym, Token, shader_kind};
 
 /// A terminal between the indices of its first and last expanded token.
-pub type Spanned<'s> = (u32, Token<'s>, u32);
+pub(crate) type Spanned<'s> = (u32, Token<'s>, u32);
 
 /// Lexes everything.
-pub fn lex<'s>(tokens: &[(PpToken, u32)], sources: &'s Sources, diagnostics: &mut Diagnostics) -> Vec<Spanned<'s>> {
+pub(crate) fn lex<'s>(
+    tokens: &[(PpToken, u32)],
+    sources: &'s Sources,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Spanned<'s>> {
     let mut lexer = Lexer { sources, tokens, at: 0, out: Vec::with_capacity(tokens.len()), diagnostics };
     while lexer.at < tokens.len() {
         lexer.step();

@@ -12,6 +12,8 @@
 //! beyond that ends in one message and an empty tree. Dropping an expression does not recurse; whoever walks one must
 //! be ready for that depth.
 
+#![warn(unreachable_pub)]
+
 pub mod ast;
 mod brackets;
 pub mod codes;

@@ -2,7 +2,7 @@
 
 /// What a number's text stands for.
 #[derive(Debug, PartialEq)]
-pub enum Number {
+pub(crate) enum Number {
     /// An integer that fits.
     Int(i32),
     /// 2^31 in decimal, which wraps around; behind a minus it is the least integer.
@@ -18,7 +18,7 @@ pub enum Number {
 }
 
 /// Reads a number. Hexadecimal integers use all 32 bits.
-pub fn number(text: &str) -> Number {
+pub(crate) fn number(text: &str) -> Number {
     if let Some(hex) = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         return match u64::from_str_radix(hex, 16) {
             Ok(value) => u32::try_from(value).map_or(Number::TooLarge, |v| Number::Int(v as i32)),
@@ -43,7 +43,7 @@ pub fn number(text: &str) -> Number {
 
 /// Resolves the escapes between the quotes of a string literal. Each unknown escape is handed to `unknown` as its
 /// range of bytes in `text` and then stands for the character after the backslash.
-pub fn string(text: &str, mut unknown: impl FnMut(usize, usize)) -> String {
+pub(crate) fn string(text: &str, mut unknown: impl FnMut(usize, usize)) -> String {
     let mut out = String::with_capacity(text.len());
     let mut chars = text.char_indices().peekable();
     while let Some((start, c)) = chars.next() {

@@ -9,14 +9,14 @@ use crate::span::Span;
 use std::sync::Arc;
 
 /// Marks a token that no macro made.
-pub const NO_CALL: u32 = u32::MAX;
+pub(crate) const NO_CALL: u32 = u32::MAX;
 
 /// The file that holds text made by the preprocessor: pasted names and strings made by `#`.
-pub const SCRATCH: u32 = 0;
+pub(crate) const SCRATCH: u32 = 0;
 
 /// A range of bytes in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub(crate) struct Place {
     /// Index of the file.
     pub file: u32,
     /// The first byte.
@@ -27,7 +27,7 @@ pub struct Place {
 
 /// One reading of a file. A file that is included twice is there twice; the text is shared.
 #[derive(Clone, Debug)]
-pub struct SourceFile {
+pub(crate) struct SourceFile {
     /// The name for messages.
     pub name: Arc<str>,
     /// The text.
@@ -40,19 +40,19 @@ pub struct SourceFile {
 
 impl SourceFile {
     /// A file and its line table.
-    pub fn new(name: &str, text: Arc<str>, included_from: Option<Place>) -> Self {
+    pub(crate) fn new(name: &str, text: Arc<str>, included_from: Option<Place>) -> Self {
         let after = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i as u32 + 1);
         let line_starts = std::iter::once(0).chain(after).collect();
         SourceFile { name: name.into(), text, line_starts, included_from }
     }
 
     /// The line of a byte, counted from 0.
-    pub fn line(&self, byte: u32) -> usize {
+    pub(crate) fn line(&self, byte: u32) -> usize {
         self.line_starts.partition_point(|start| *start <= byte) - 1
     }
 
     /// The bytes of a line, its newline included.
-    pub fn line_range(&self, line: usize) -> Option<std::ops::Range<usize>> {
+    pub(crate) fn line_range(&self, line: usize) -> Option<std::ops::Range<usize>> {
         let start = *self.line_starts.get(line)? as usize;
         let end = self.line_starts.get(line + 1).map_or(self.text.len(), |next| *next as usize);
         Some(start..end)
@@ -61,7 +61,7 @@ impl SourceFile {
 
 /// One expanded token.
 #[derive(Clone, Copy, Debug)]
-pub struct Expanded {
+pub(crate) struct Expanded {
     /// Where it is spelled.
     pub place: Place,
     /// The macro call it came out of, or [`NO_CALL`].
@@ -74,7 +74,7 @@ pub struct Expanded {
 
 /// One call of a macro.
 #[derive(Clone, Debug)]
-pub struct MacroCall {
+pub(crate) struct MacroCall {
     /// The macro.
     pub name: Arc<str>,
     /// Where its name stood.
@@ -105,19 +105,19 @@ pub(crate) struct SourceTable {
 
 impl SourceTable {
     /// A table with nothing but the scratch file.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let scratch = SourceFile::new("<made by macros>", Arc::from(""), None);
         SourceTable { files: vec![scratch], expanded: Vec::new(), calls: Vec::new(), scratch: String::new() }
     }
 
     /// The text of a place.
-    pub fn text(&self, place: Place) -> &str {
+    pub(crate) fn text(&self, place: Place) -> &str {
         let text = if place.file == SCRATCH { &self.scratch } else { &*self.files[place.file as usize].text };
         text.get(place.start as usize..place.end as usize).unwrap_or("")
     }
 
     /// Puts made-up text into the scratch file.
-    pub fn invent(&mut self, text: &str) -> Place {
+    pub(crate) fn invent(&mut self, text: &str) -> Place {
         let start = self.scratch.len() as u32;
         self.scratch.push_str(text);
         self.scratch.push('\n');
@@ -125,14 +125,14 @@ impl SourceTable {
     }
 
     /// A span for a place that no token of the program has.
-    pub fn aside(&mut self, place: Place, call: u32) -> Span {
+    pub(crate) fn aside(&mut self, place: Place, call: u32) -> Span {
         let index = self.expanded.len() as u32;
         self.expanded.push(Expanded { place, call, space: true, aside: true });
         Span { first: index, last: index }
     }
 
     /// The place in the user's text: that of the outermost macro call.
-    pub fn outermost(&self, mut place: Place, mut call: u32) -> Place {
+    pub(crate) fn outermost(&self, mut place: Place, mut call: u32) -> Place {
         while let Some(c) = self.calls.get(call as usize) {
             (place, call) = (c.place, c.parent);
         }
@@ -140,7 +140,7 @@ impl SourceTable {
     }
 
     /// The finished map.
-    pub fn finish(mut self) -> Sources {
+    pub(crate) fn finish(mut self) -> Sources {
         let text = Arc::from(std::mem::take(&mut self.scratch));
         self.files[SCRATCH as usize] = SourceFile::new("<made by macros>", text, None);
         Sources { table: Arc::new(self) }

@@ -4,7 +4,7 @@ use crate::ast::ShaderKind;
 
 /// A terminal with its value.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Token<'s> {
+pub(crate) enum Token<'s> {
     /// A name that is no keyword.
     Ident(&'s str),
     /// An integer literal, decimal or hexadecimal.
@@ -27,11 +27,11 @@ macro_rules! symbols {
         /// A terminal without a value.
         #[allow(missing_docs)] // the spelling beside each name says it all
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Sym { $($name),* }
+        pub(crate) enum Sym { $($name),* }
 
         impl Sym {
             /// The text of the terminal.
-            pub fn text(self) -> &'static str {
+            pub(crate) fn text(self) -> &'static str {
                 match self { $(Sym::$name => $text),* }
             }
         }
@@ -55,7 +55,7 @@ symbols! {
 
 impl Sym {
     /// The keyword that a word spells, if any. `and`, `or` and `not` are other spellings of operators.
-    pub fn keyword(word: &str) -> Option<Sym> {
+    pub(crate) fn keyword(word: &str) -> Option<Sym> {
         Some(match word {
             "break" => Sym::Break,
             "closure" => Sym::Closure,
@@ -86,7 +86,7 @@ impl Sym {
 }
 
 /// The word that starts a shader of a kind.
-pub fn shader_kind(word: &str) -> Option<ShaderKind> {
+pub(crate) fn shader_kind(word: &str) -> Option<ShaderKind> {
     Some(match word {
         "shader" => ShaderKind::Generic,
         "surface" => ShaderKind::Surface,

@@ -10,7 +10,7 @@ use crate::span::Span;
 
 /// What the actions gather besides the tree they return.
 #[derive(Default)]
-pub struct Context {
+pub(crate) struct Context {
     /// The items so far. They live here and not in the parser's result so that they survive a fatal error.
     pub items: Vec<Item>,
     /// The parse errors that were recovered from, in the order they were met.
@@ -21,12 +21,12 @@ pub struct Context {
 
 impl Context {
     /// Notes a parse error whose text has been skipped.
-    pub fn recovered(&mut self, recovery: Recovery<'_>) {
+    pub(crate) fn recovered(&mut self, recovery: Recovery<'_>) {
         self.failures.push(Failure::from(recovery));
     }
 
     /// A closure type. OSL has `closure color` only; any other is reported and read as that.
-    pub fn closure(&mut self, base: TypeName, span: Span) -> TypeSpec {
+    pub(crate) fn closure(&mut self, base: TypeName, span: Span) -> TypeSpec {
         if base != TypeName::Color {
             self.diagnostics.push(
                 Diagnostic::error("E0304", span, "only `closure color` is a closure type")
@@ -39,7 +39,7 @@ impl Context {
 }
 
 /// A name with its brackets and initialiser.
-pub struct Declarator {
+pub(crate) struct Declarator {
     /// The name.
     pub name: Ident,
     /// Its array brackets.
@@ -49,12 +49,12 @@ pub struct Declarator {
 }
 
 /// The span from one token to another.
-pub fn span(first: u32, last: u32) -> Span {
+pub(crate) fn span(first: u32, last: u32) -> Span {
     Span { first, last: last.max(first) }
 }
 
 /// What stands between the parentheses of a `for`.
-pub struct ForHead {
+pub(crate) struct ForHead {
     /// The first part.
     pub init: Box<Stmt>,
     /// The second part.
@@ -64,40 +64,40 @@ pub struct ForHead {
 }
 
 /// The elements without their boxes.
-pub fn unboxed<T>(list: Vec<Box<T>>) -> Vec<T> {
+pub(crate) fn unboxed<T>(list: Vec<Box<T>>) -> Vec<T> {
     list.into_iter().map(|element| *element).collect()
 }
 
 /// An expression from one token to another.
-pub fn expr(kind: ExprKind, first: u32, last: u32) -> Box<Expr> {
+pub(crate) fn expr(kind: ExprKind, first: u32, last: u32) -> Box<Expr> {
     Box::new(Expr { kind, span: span(first, last) })
 }
 
 /// A statement from one token to another.
-pub fn stmt(kind: StmtKind, first: u32, last: u32) -> Box<Stmt> {
+pub(crate) fn stmt(kind: StmtKind, first: u32, last: u32) -> Box<Stmt> {
     Box::new(Stmt { kind, span: span(first, last) })
 }
 
 /// A function once its body is known.
-pub fn function(mut head: Box<FunctionDecl>, body: Option<Vec<Stmt>>) -> FunctionDecl {
+pub(crate) fn function(mut head: Box<FunctionDecl>, body: Option<Vec<Stmt>>) -> FunctionDecl {
     head.body = body;
     *head
 }
 
 /// A formal parameter.
-pub fn param(output: bool, ty: TypeSpec, d: Declarator, metadata: Vec<Metadata>) -> Box<Param> {
+pub(crate) fn param(output: bool, ty: TypeSpec, d: Declarator, metadata: Vec<Metadata>) -> Box<Param> {
     Box::new(Param { output, ty, name: d.name, array: d.array, default: d.init, metadata })
 }
 
 /// Metadata before and after the formals, as one list.
-pub fn joined(before: Option<Vec<Metadata>>, after: Option<Vec<Metadata>>) -> Vec<Metadata> {
+pub(crate) fn joined(before: Option<Vec<Metadata>>, after: Option<Vec<Metadata>>) -> Vec<Metadata> {
     let mut all = before.unwrap_or_default();
     all.extend(after.unwrap_or_default());
     all
 }
 
 /// A declaration statement.
-pub fn declare(ty: TypeSpec, names: Vec<Box<Declarator>>) -> StmtKind {
+pub(crate) fn declare(ty: TypeSpec, names: Vec<Box<Declarator>>) -> StmtKind {
     let declared = |d: Box<Declarator>| {
         let d = *d;
         VarDecl { ty: ty.clone(), name: d.name, array: d.array, init: d.init }
@@ -106,60 +106,60 @@ pub fn declare(ty: TypeSpec, names: Vec<Box<Declarator>>) -> StmtKind {
 }
 
 /// An `if`.
-pub fn branch(condition: Box<Expr>, then: Box<Stmt>, otherwise: Option<Box<Stmt>>) -> StmtKind {
+pub(crate) fn branch(condition: Box<Expr>, then: Box<Stmt>, otherwise: Option<Box<Stmt>>) -> StmtKind {
     StmtKind::If { condition: *condition, then, otherwise }
 }
 
 /// A `for`.
-pub fn for_loop(head: Box<ForHead>, body: Box<Stmt>) -> StmtKind {
+pub(crate) fn for_loop(head: Box<ForHead>, body: Box<Stmt>) -> StmtKind {
     let ForHead { init, condition, step } = *head;
     StmtKind::For { init, condition: condition.map(|e| *e), step: step.map(|e| *e), body }
 }
 
 /// `a op b`
-pub fn binary(op: BinaryOp, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
+pub(crate) fn binary(op: BinaryOp, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
     let span = a.span.to(b.span);
     Box::new(Expr { kind: ExprKind::Binary(op, a, b), span })
 }
 
 /// `a = b` and its kin.
-pub fn assign(op: Option<BinaryOp>, target: Box<Expr>, value: Box<Expr>) -> Box<Expr> {
+pub(crate) fn assign(op: Option<BinaryOp>, target: Box<Expr>, value: Box<Expr>) -> Box<Expr> {
     let span = target.span.to(value.span);
     Box::new(Expr { kind: ExprKind::Assign(op, target, value), span })
 }
 
 /// `op a`
-pub fn unary(op: UnaryOp, operand: Box<Expr>, first: u32) -> Box<Expr> {
+pub(crate) fn unary(op: UnaryOp, operand: Box<Expr>, first: u32) -> Box<Expr> {
     let last = operand.span.last;
     expr(ExprKind::Unary(op, operand), first, last)
 }
 
 /// `(type) a`
-pub fn cast(ty: TypeSpec, operand: Box<Expr>, first: u32) -> Box<Expr> {
+pub(crate) fn cast(ty: TypeSpec, operand: Box<Expr>, first: u32) -> Box<Expr> {
     let last = operand.span.last;
     expr(ExprKind::Cast(ty, operand), first, last)
 }
 
 /// `++a` and `--a`
-pub fn step_before(increment: bool, target: Box<Expr>, first: u32) -> Box<Expr> {
+pub(crate) fn step_before(increment: bool, target: Box<Expr>, first: u32) -> Box<Expr> {
     let last = target.span.last;
     expr(ExprKind::Step { increment, prefix: true, target }, first, last)
 }
 
 /// `a++` and `a--`
-pub fn step_after(increment: bool, target: Box<Expr>, last: u32) -> Box<Expr> {
+pub(crate) fn step_after(increment: bool, target: Box<Expr>, last: u32) -> Box<Expr> {
     let first = target.span.first;
     expr(ExprKind::Step { increment, prefix: false, target }, first, last)
 }
 
 /// `c ? a : b`
-pub fn ternary(condition: Box<Expr>, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
+pub(crate) fn ternary(condition: Box<Expr>, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
     let span = condition.span.to(b.span);
     Box::new(Expr { kind: ExprKind::Ternary(condition, a, b), span })
 }
 
 /// `a, b, c`
-pub fn comma(first: Box<Expr>, rest: Vec<Box<Expr>>) -> Box<Expr> {
+pub(crate) fn comma(first: Box<Expr>, rest: Vec<Box<Expr>>) -> Box<Expr> {
     let span = rest.iter().fold(first.span, |span, e| span.to(e.span));
     let mut all = Vec::with_capacity(rest.len() + 1);
     all.push(*first);
@@ -168,19 +168,19 @@ pub fn comma(first: Box<Expr>, rest: Vec<Box<Expr>>) -> Box<Expr> {
 }
 
 /// `a[i]`
-pub fn index(base: Box<Expr>, index: Box<Expr>, last: u32) -> Box<Expr> {
+pub(crate) fn index(base: Box<Expr>, index: Box<Expr>, last: u32) -> Box<Expr> {
     let first = base.span.first;
     expr(ExprKind::Index(base, index), first, last)
 }
 
 /// `a.name`
-pub fn field(base: Box<Expr>, name: Ident) -> Box<Expr> {
+pub(crate) fn field(base: Box<Expr>, name: Ident) -> Box<Expr> {
     let span = base.span.to(name.span);
     Box::new(Expr { kind: ExprKind::Field(base, name), span })
 }
 
 /// `(a)`: no node, but the span takes in the parentheses.
-pub fn parenthesised(mut inner: Box<Expr>, first: u32, last: u32) -> Box<Expr> {
+pub(crate) fn parenthesised(mut inner: Box<Expr>, first: u32, last: u32) -> Box<Expr> {
     inner.span = span(first, last);
     inner
 }

@@ -12,6 +12,7 @@ pub trait Progress: Sync {
 }
 
 /// Tells nobody.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
 impl Progress for Silent {

@@ -16,6 +16,7 @@ use super::wave::Wave;
 use super::world::World;
 use crate::exec::{Group, Report};
 use crate::scene::{Camera, Scene};
+use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -72,6 +73,12 @@ impl Gathered {
             Report::Output(_) | Report::File(..) | Report::Warning(_) | Report::Error(_) => None,
         };
         self.reports.iter().find_map(fatal).map_or(Ok(()), Err)
+    }
+}
+
+impl fmt::Debug for Renderer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Renderer").field("scene", &self.world.scene.name).finish_non_exhaustive()
     }
 }
 

@@ -31,4 +31,4 @@ pub use nearest::nearest;
 pub use scene::{Background, Material, Options, Scene};
 pub use shipped::SHIPPED;
 pub use source::SceneSource;
-pub use spec::parse_group;
+pub use spec::{Statements, parse_group};

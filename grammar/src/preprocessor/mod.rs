@@ -12,7 +12,7 @@ mod expand;
 mod include;
 mod macros;
 mod output;
-pub mod scan;
+pub(crate) mod scan;
 mod state;
 
 use crate::Options;

@@ -12,7 +12,7 @@ use logos::{Filter, Lexer, Logos};
 #[logos(skip r"([ \t\r\x0b\x0c\u{feff}]|\\\r?\n)+")]
 #[logos(skip(r"//([^\\\n]|\\\r?\n|\\[^\r\n])*", allow_greedy = true))]
 #[allow(missing_docs)] // the spelling beside each variant says it all
-pub enum Kind {
+pub(crate) enum Kind {
     #[token("\n")]
     Newline,
     #[regex("[A-Za-z_][A-Za-z0-9_]*")]
@@ -142,7 +142,7 @@ fn block_comment(lexer: &mut Lexer<'_, Kind>) -> Filter<()> {
 
 /// A preprocessing token.
 #[derive(Clone, Copy, Debug)]
-pub struct PpToken {
+pub(crate) struct PpToken {
     /// What it is.
     pub kind: Kind,
     /// White space or a comment stands before it.
@@ -158,7 +158,7 @@ pub struct PpToken {
 }
 
 /// All tokens of a text.
-pub fn scan(text: &str, file: u32) -> Vec<PpToken> {
+pub(crate) fn scan(text: &str, file: u32) -> Vec<PpToken> {
     let mut tokens = Vec::with_capacity(text.len() / 4);
     let mut lexer = Kind::lexer(text);
     let (mut line_start, mut previous_end) = (true, 0);

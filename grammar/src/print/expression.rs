@@ -7,13 +7,13 @@ use std::borrow::Cow;
 
 /// How tightly an expression binds, loosest first.
 mod level {
-    pub const COMMA: u8 = 0;
-    pub const ASSIGN: u8 = 1;
-    pub const TERNARY: u8 = 2;
-    pub const OR: u8 = 3;
-    pub const UNARY: u8 = 13;
-    pub const POSTFIX: u8 = 14;
-    pub const PRIMARY: u8 = 15;
+    pub(super) const COMMA: u8 = 0;
+    pub(super) const ASSIGN: u8 = 1;
+    pub(super) const TERNARY: u8 = 2;
+    pub(super) const OR: u8 = 3;
+    pub(super) const UNARY: u8 = 13;
+    pub(super) const POSTFIX: u8 = 14;
+    pub(super) const PRIMARY: u8 = 15;
 }
 
 enum Piece<'a> {
@@ -23,12 +23,12 @@ enum Piece<'a> {
 }
 
 /// Prints an expression where the comma operator is allowed.
-pub fn write(expr: &Expr, out: &mut String) {
+pub(super) fn write(expr: &Expr, out: &mut String) {
     run(vec![Piece::Expr(expr, level::COMMA)], out);
 }
 
 /// Prints an expression where a comma would separate list items.
-pub fn write_item(expr: &Expr, out: &mut String) {
+pub(super) fn write_item(expr: &Expr, out: &mut String) {
     run(vec![Piece::Expr(expr, level::ASSIGN)], out);
 }
 

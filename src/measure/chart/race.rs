@@ -1,5 +1,6 @@
 //! Times of competing methods, measured in turns so that a slow moment of the machine strikes all of them.
 
+use std::fmt;
 use std::time::Instant;
 
 /// Something to be timed.
@@ -8,6 +9,12 @@ pub struct Runner<'a> {
     pub count: usize,
     /// Makes them.
     pub run: Box<dyn FnMut() + 'a>,
+}
+
+impl fmt::Debug for Runner<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Runner").field("count", &self.count).finish_non_exhaustive()
+    }
 }
 
 impl<'a> Runner<'a> {

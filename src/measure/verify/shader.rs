@@ -29,6 +29,7 @@ struct Setting {
 }
 
 /// A shader with the places and parameters it is tried at.
+#[derive(Debug)]
 pub struct ShaderSubject {
     name: String,
     variants: Vec<(String, Group, Spot)>,

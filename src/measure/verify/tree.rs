@@ -50,6 +50,12 @@ pub struct TreeScatterer {
     complaint: Option<String>,
 }
 
+impl std::fmt::Debug for TreeScatterer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TreeScatterer").field("spot", &self.spot).finish_non_exhaustive()
+    }
+}
+
 impl TreeScatterer {
     /// A scatterer of a group.
     pub fn new(group: Group, spot: Spot, settings: Settings) -> Self {
