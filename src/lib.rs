@@ -13,6 +13,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Testing a shader
+//!
+//! What a shader is made of is read lane by lane: the leaves of its tree with names, weights and arguments, and its
+//! outputs by name, as far as the group keeps them.
+//!
+//! ```
+//! use velour::closure::reading::Value;
+//! use velour::exec::{Machine, Points, Values};
+//!
+//! let shader = velour::compile::compile("surface s(output float f = 0) { f = 1 - u; Ci = f * sheen(diffuse(N), N, color(1), .5); }")?;
+//! let (group, mut machine) = (shader.group().keep_outputs().build()?, Machine::new());
+//! let leaf = machine.shade(&group, &Points::single(glam::Vec3::Z)).lane(group.table(), 0).next().unwrap();
+//! assert_eq!((leaf.name(), leaf.weight(), leaf.get("roughness")), ("sheen", [1.0; 3], Some(Value::Float(0.5))));
+//! assert_eq!(machine.output(&group, "f").unwrap().lane(0), Values::Floats(vec![1.0]));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # The way of a shader
 //!
 //! ```text

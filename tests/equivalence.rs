@@ -3,8 +3,7 @@
 //! The corpus is a handful of shaders written for their control flow, and programs made up at random from one seed.
 
 use velour::compile::Compiler;
-use velour::exec::{Group, MAX_LANES, Machine, Points, Report};
-use velour::ir::program::OutputValue;
+use velour::exec::{Group, MAX_LANES, Machine, Points, ReportKind, Values};
 use velour::ir::verify::verify;
 
 /// The seed of all programs that are made up.
@@ -47,22 +46,20 @@ fn results(group: &Group, width: usize) -> (Vec<String>, Vec<u64>) {
         let len = width.min(POINTS - first);
         machine.shade(group, &points(first, len));
         for report in machine.take_reports() {
-            match report {
-                Report::Output(text) => printed.push(text),
+            match report.kind {
+                ReportKind::Output => printed.push(report.text),
                 // What is said once a batch depends on the width by design.
-                Report::Error(_) | Report::Warning(_) | Report::File(..) => {}
-                Report::Fatal(text) => panic!("{text}"),
+                ReportKind::Error | ReportKind::Mistake | ReportKind::Warning | ReportKind::File(_) => {}
+                ReportKind::Fatal => panic!("{report}"),
             }
         }
         for lane in 0..len {
             for output in &group.program().outputs {
-                match &output.value {
-                    OutputValue::Regs(regs) => bits.extend(regs.iter().map(|&reg| number(&machine, group, reg, lane))),
-                    OutputValue::Array(id) => {
-                        let info = group.program().arrays[id.0 as usize];
-                        let count = (info.len * info.components) as usize;
-                        bits.extend((0..count).map(|n| machine.array_number(group, *id, n, lane).to_bits()));
-                    }
+                match machine.output(group, &output.name).unwrap().lane(lane) {
+                    Values::Floats(values) => bits.extend(values.iter().map(|x| u64::from(x.to_bits()))),
+                    Values::Ints(values) => bits.extend(values.iter().map(|&x| x as u64)),
+                    Values::Strings(values) => bits.extend(values.iter().map(|text| hash(text))),
+                    Values::Closures(values) => bits.push(values.len() as u64),
                 }
             }
         }
@@ -71,11 +68,9 @@ fn results(group: &Group, width: usize) -> (Vec<String>, Vec<u64>) {
     (printed, bits)
 }
 
-fn number(machine: &Machine, group: &Group, reg: velour::ir::program::Reg, lane: usize) -> u64 {
-    match group.program().kind(reg) {
-        velour::ir::program::Kind::Float => machine.float(group, reg, lane).to_bits() as u64,
-        _ => machine.int(group, reg, lane) as u64,
-    }
+/// A number that is the same for equal texts.
+fn hash(text: &str) -> u64 {
+    text.bytes().fold(1, |sum, byte| sum.wrapping_mul(SEED) ^ u64::from(byte))
 }
 
 /// Runs a text in all ways and compares.
@@ -84,7 +79,7 @@ fn same_everywhere(text: &str) {
     let plain = shader.group().keep_outputs().unoptimized().build().unwrap();
     let best = shader.group().keep_outputs().build().unwrap();
     for group in [&plain, &best] {
-        verify(group.program()).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
+        verify(group.program(), group.table()).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
     }
     let reference = results(&plain, 1);
     for (group, name) in [(&plain, "unoptimised"), (&best, "optimised")] {

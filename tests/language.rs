@@ -2,7 +2,7 @@
 
 use velour::closure::print::tree_text;
 use velour::compile::Compiler;
-use velour::exec::{Machine, Points, Report};
+use velour::exec::{Machine, Points, Report, ReportKind};
 
 /// Four points along u = 0, 1/4, 1/2, 3/4 with P = (u, v, 1); x moves u by 1, y moves v by 1.
 fn points(lanes: usize) -> Points {
@@ -28,9 +28,9 @@ fn run(text: &str, lanes: usize) -> String {
     let group = shader.group().build().unwrap();
     let mut machine = Machine::new();
     machine.shade(&group, &points(lanes));
-    let say = |report| match report {
-        Report::Output(text) => text,
-        other => format!("{other:?}\n"),
+    let say = |report: Report| match report.kind {
+        ReportKind::Output => report.text,
+        kind => format!("{kind:?} {:?}\n", Report { kind: kind.clone(), ..report }.to_string()),
     };
     machine.take_reports().into_iter().map(say).collect()
 }
@@ -282,11 +282,11 @@ fn indices_outside_are_reported_and_clamped() {
     cases(&[
         (
             r#"int a[3] = {1, 2, 3}; int i = 5; printf("%d\n", a[i + (int)u]);"#,
-            "Error(\"test.osl:1:62: error: index 5 is outside 0..2\")\n3\n",
+            "Mistake \"test.osl:1:62: error: index 5 is outside 0..2\"\n3\n",
         ),
         (
             r#"int a[3] = {1, 2, 3}; a[-1 - (int)u] = 7; printf("%d\n", a[0]);"#,
-            "Error(\"test.osl:1:36: error: index -1 is outside 0..2\")\n7\n",
+            "Mistake \"test.osl:1:36: error: index -1 is outside 0..2\"\n7\n",
         ),
     ]);
 }
@@ -349,7 +349,7 @@ fn noise_by_name() {
         "",
         r#"string k = "ce"; if (u > 9) k = "perlin"; float x = noise(concat(k, "lx"), P); printf("%g\n", x);"#,
         1,
-        "Error(\"test.osl:1:67: there is no noise \\\"celx\\\"\")\n0\n",
+        "Error \"test.osl:1:67: there is no noise \\\"celx\\\"\"\n0\n",
     );
 }
 
@@ -366,7 +366,7 @@ fn strings() {
         (r#"int r[4]; printf("%d %d %d", regex_search("foobar.baz", r, "(o+)b"), r[2], r[3]);"#, "1 1 3"),
         (
             r#"fprintf("out.txt", "%d\n", 3); warning("w %d", 1); error("e");"#,
-            "File(\"out.txt\", \"3\\n\")\nWarning(\"test.osl:1:45: w 1\")\nError(\"test.osl:1:65: e\")\n",
+            "File(\"out.txt\") \"out.txt: 3\\n\"\nWarning \"test.osl:1:45: w 1\"\nError \"test.osl:1:65: e\"\n",
         ),
     ]);
 }
@@ -409,7 +409,7 @@ fn parameters_and_layers() {
     let shade = |group: &velour::exec::Group| {
         let mut machine = Machine::new();
         machine.shade(group, &points(2));
-        machine.take_reports().into_iter().map(|r| format!("{r:?}")).collect::<String>()
+        machine.take_reports().into_iter().map(|r| format!("{:?}({:?})", r.kind, r.text)).collect::<String>()
     };
     let builder = || velour::compile::GroupBuilder::new(compiler.closures.clone());
     let group = builder().layer("a", &first).param("k", &[8.0]).layer("b", &second);
@@ -452,7 +452,8 @@ fn the_number_of_knots_may_vary() {
     let group = shader.group().build().unwrap();
     let mut machine = Machine::new();
     machine.shade(&group, &Points::new(1));
-    assert_eq!(machine.take_reports(), [Report::Output("1.5 1.5\n".to_owned())]);
+    let [report] = &machine.take_reports()[..] else { panic!("one line is printed") };
+    assert_eq!((&report.kind, report.text.as_str()), (&ReportKind::Output, "1.5 1.5\n"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use velour::closure::print::tree_text;
 use velour::compile::{Compiler, Shader};
-use velour::exec::{Group, Machine, Points, Report};
+use velour::exec::{Group, Machine, Points, ReportKind};
 
 const LANES: usize = 9;
 
@@ -121,9 +121,9 @@ fn said(group: &Group) -> Vec<String> {
     let mut machine = Machine::new();
     let tree = machine.shade(group, &points());
     let mut out: Vec<String> = (0..LANES).map(|lane| tree_text(group.table(), tree, lane)).collect();
-    out.extend(machine.take_reports().into_iter().map(|report| match report {
-        Report::Output(text) => text,
-        other => panic!("{other:?}"),
+    out.extend(machine.take_reports().into_iter().map(|report| match report.kind {
+        ReportKind::Output => report.text,
+        _ => panic!("{report:?}"),
     }));
     out
 }

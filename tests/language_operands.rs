@@ -1,7 +1,7 @@
 //! What an operation works on, and when it is read: the same wherever an expression stands.
 
 use velour::compile::Compiler;
-use velour::exec::{Machine, Points, Report};
+use velour::exec::{Machine, Points, Report, ReportKind};
 
 const HEAD: &str = "
 struct S { float a; float k[2]; };
@@ -73,9 +73,9 @@ fn reports(text: &str) -> Vec<Report> {
 
 /// What a shader prints, words only.
 fn words(text: &str) -> String {
-    let say = |report| match report {
-        Report::Output(text) => text,
-        other => panic!("{other:?}\n{text}"),
+    let say = |report: Report| {
+        assert_eq!(report.kind, ReportKind::Output, "{report:?}\n{text}");
+        report.text
     };
     let printed: String = reports(text).into_iter().map(say).collect();
     printed.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -149,10 +149,10 @@ fn an_index_of_a_component_is_clamped_and_reported_known_or_not() {
                 let text = format!("{HEAD} surface s() {{ int i = {index}; {body} }}");
                 let (mut printed, mut said) = (String::new(), Vec::new());
                 for report in reports(&text) {
-                    match report {
-                        Report::Output(text) => printed += &text,
-                        Report::Error(text) => said.push(text),
-                        other => panic!("{other:?}"),
+                    match report.kind {
+                        ReportKind::Output => printed += &report.text,
+                        ReportKind::Mistake => said.push(report.text),
+                        _ => panic!("{report:?}"),
                     }
                 }
                 assert_eq!(printed.trim(), expected, "{text}");

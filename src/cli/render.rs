@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::speak::{say, tell};
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
-use crate::exec::Report;
+use crate::exec::{Report, ReportKind};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::{Explanation, Image, Progress, Renderer, Settings, output};
 use crate::scene::{Scene, ShaderFiles};
@@ -187,10 +187,12 @@ fn chosen(args: &RenderArgs, tolerance: f64, closure: closure::Settings) -> clos
 /// Passes on what shaders said.
 fn pass_on(reports: &[Report]) {
     for report in reports {
-        match report {
-            Report::Output(text) => say(text),
-            Report::File(name, text) => tell(&format!("{name}: {text}")),
-            Report::Warning(text) | Report::Error(text) | Report::Fatal(text) => tell(&format!("{text}\n")),
+        match &report.kind {
+            ReportKind::Output => say(&report.text),
+            ReportKind::File(_) => tell(&report.to_string()),
+            ReportKind::Warning | ReportKind::Error | ReportKind::Mistake | ReportKind::Fatal => {
+                tell(&format!("{report}\n"));
+            }
         }
     }
 }

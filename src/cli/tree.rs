@@ -6,7 +6,7 @@ use super::speak::{say, tell};
 use crate::closure::print::tree_text;
 use crate::closure::settings::Shadowing;
 use crate::closure::{Layering, Lobes, Settings};
-use crate::exec::{Group, Machine, Points, Report};
+use crate::exec::{Group, Machine, Points, ReportKind};
 use crate::math::columns::Column3;
 use glam::Vec3;
 use std::path::PathBuf;
@@ -60,11 +60,11 @@ pub fn run(args: &TreeArgs) -> Result<(), Failure> {
     let tree = machine.shade(&group, &points);
     let text = if args.lobes { lobe_table(args, &group, tree, &points) } else { tree_text(group.table(), tree, 0) };
     for report in machine.take_reports() {
-        match report {
-            Report::Output(text) => say(&text),
-            Report::File(name, text) => tell(&format!("{name}: {text}")),
-            Report::Warning(text) | Report::Error(text) => tell(&format!("{text}\n")),
-            Report::Fatal(text) => return Err(Failure::Wrong(text)),
+        match &report.kind {
+            ReportKind::Output => say(&report.text),
+            ReportKind::File(_) => tell(&report.to_string()),
+            ReportKind::Warning | ReportKind::Error | ReportKind::Mistake => tell(&format!("{report}\n")),
+            ReportKind::Fatal => return Err(Failure::Wrong(report.to_string())),
         }
     }
     say(&format!("{}\n", if text.is_empty() { "0" } else { &text }));

@@ -6,7 +6,6 @@
 use super::tree::{Floats, Ints, Keyword, NodeId, Param, Tree};
 use super::words::Words;
 use crate::lang::closures::{ParamKind, ParamSpec};
-use crate::lang::symbols::Symbol;
 
 /// Declares the arguments of a closure: a struct with a field for each, and from the same list its signature.
 ///
@@ -182,7 +181,7 @@ impl<E: Words> Word<E> {
     pub fn at(&self, tree: &Tree, lane: usize) -> Option<E> {
         match *self {
             Word::Same(value) => value,
-            Word::Each(column) => E::parse(Symbol(tree.int(column, lane)).text()),
+            Word::Each(column) => E::parse(tree.text(column, lane)),
         }
     }
 }
@@ -266,9 +265,9 @@ impl<E: Words> Argument for Word<E> {
         E::ALL.iter().map(|(word, _)| *word).collect()
     }
 
-    fn of(param: Option<Param>, _: &Tree) -> Self {
+    fn of(param: Option<Param>, tree: &Tree) -> Self {
         match param {
-            Some(Param::String(Ints::Uniform(symbol))) => Word::Same(E::parse(Symbol(symbol).text())),
+            Some(Param::String(column @ Ints::Uniform(_))) => Word::Same(E::parse(tree.text(column, 0))),
             Some(Param::String(column)) => Word::Each(column),
             _ => Word::Same(None),
         }

@@ -39,6 +39,7 @@ mod lobe_models;
 pub mod lobes;
 mod normals;
 pub mod print;
+pub mod reading;
 mod sampling;
 pub mod settings;
 mod source;

@@ -5,7 +5,6 @@
 
 use super::tree::{Node, NodeId, Param, Tree};
 use crate::lang::closures::ClosureTable;
-use crate::lang::symbols::Symbol;
 use crate::ops::format::{FormatArg, format};
 use std::fmt::Write;
 
@@ -121,7 +120,7 @@ fn value(tree: &Tree, param: Param, lane: usize) -> String {
             format!("({x}, {y}, {z})")
         }
         Param::Int(column) => tree.int(column, lane).to_string(),
-        Param::String(column) => format!("{:?}", Symbol(tree.int(column, lane)).text()),
+        Param::String(column) => format!("{:?}", tree.text(column, lane)),
         Param::Closure(_) => String::new(),
     }
 }

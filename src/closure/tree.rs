@@ -4,6 +4,8 @@
 //! [`Node::Select`] with a mask. So one walk over the tree serves every lane. A missing closure (`Ci = 0`) is `None`.
 
 use crate::lang::closures::ClosureId;
+use crate::lang::symbols::{Strings, Symbol};
+use std::collections::HashSet;
 
 /// Index of a node in its tree. Children are always older, so their index is smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -98,6 +100,8 @@ pub struct Tree {
     pub ints: Vec<i32>,
     /// The value of `Ci`.
     pub root: Option<NodeId>,
+    /// The strings that the shader made in this batch.
+    pub strings: Strings,
     /// Where in the text each leaf was written, as the host numbers places; in the order of the nodes.
     sites: Vec<(NodeId, u32)>,
 }
@@ -112,6 +116,7 @@ impl Tree {
         self.floats.clear();
         self.ints.clear();
         self.root = None;
+        self.strings.clear();
         self.sites.clear();
     }
 
@@ -162,11 +167,17 @@ impl Tree {
     /// Is there a closure in this lane? As in OSL, one whose weight is zero is none.
     pub fn present(&self, root: Option<NodeId>, lane: usize) -> bool {
         let mut open = vec![root];
+        // A closure added to itself many times is looked at once.
+        let mut seen = HashSet::new();
         while let Some(node) = open.pop() {
             match node.map(|id| self.nodes[id.0 as usize]) {
                 None => {}
                 Some(Node::Leaf { .. }) => return true,
-                Some(Node::Add(a, b)) => open.extend([Some(a), Some(b)]),
+                Some(Node::Add(a, b)) => {
+                    if seen.insert(node) {
+                        open.extend([Some(a), Some(b)]);
+                    }
+                }
                 Some(Node::Scale { weight, child }) => {
                     let zero = weight.iter().all(|w| self.float(*w, lane) == 0.0);
                     open.push(Some(child).filter(|_| !zero));
@@ -205,6 +216,11 @@ impl Tree {
             Floats::Uniform(value) => value,
             Floats::Varying(at) => self.floats[at as usize + lane],
         }
+    }
+
+    /// The text of one lane of a column of symbols.
+    pub fn text(&self, column: Ints, lane: usize) -> &str {
+        self.strings.text(Symbol(self.int(column, lane)))
     }
 
     /// The integer of one lane.

@@ -4,7 +4,7 @@ use super::error::{GroupError, GroupProblem, GroupSubject};
 use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
 use super::shader::Shader;
 use crate::closure::Library;
-use crate::exec::{Group, Locate};
+use crate::exec::{Group, Locate, ReportPlace};
 use crate::ir::lower::{Binding, Layer, LowerOptions, SPANS_PER_LAYER, lower};
 use crate::lang::types::{Base, Type};
 use crate::optimize::{OptimizeOptions, optimize};
@@ -142,8 +142,14 @@ impl GroupBuilder {
         if let Some(error) = self.error {
             return Err(error);
         }
-        let program = optimize(lower(&self.layers, self.lower), self.optimize);
-        Ok(Group::new(program, self.closures, locator(self.sources)))
+        let program = optimize(lower(&self.layers, self.lower), self.closures.table(), self.optimize);
+        let last = self.layers.last().map_or(String::new(), |layer| layer.name.clone());
+        let names = self.layers.iter().map(|layer| (layer.shader.name.clone(), layer.name.clone())).collect();
+        Group::new(program, self.closures, locator(self.sources, names)).map_err(|error| GroupError {
+            problem: Box::new(GroupProblem::CannotRun { error }),
+            help: "this is a limit of the machine, or a mistake of the compiler that should be reported".to_owned(),
+            subject: GroupSubject::Layer(last),
+        })
     }
 }
 
@@ -154,11 +160,13 @@ impl Shader {
     }
 }
 
-/// Turns a span of the group into `file:line:column`.
-fn locator(sources: Vec<Sources>) -> Locate {
+/// Finds the place of a span of the group, with the names of its shader and its layer.
+fn locator(sources: Vec<Sources>, names: Vec<(String, String)>) -> Locate {
     Arc::new(move |span: Span| {
-        let (layer, first) = (span.first / SPANS_PER_LAYER, span.first % SPANS_PER_LAYER);
-        let place = sources.get(layer as usize).and_then(|s| s.locate(Span { first, last: first }));
-        place.map_or("shader".to_owned(), |p| format!("{}:{}:{}", p.file, p.line, p.column))
+        let (layer, first) = ((span.first / SPANS_PER_LAYER) as usize, span.first % SPANS_PER_LAYER);
+        let (shader, layer_name) = names.get(layer).cloned().unwrap_or_default();
+        let place = sources.get(layer).and_then(|s| s.locate(Span { first, last: first }));
+        let (file, line, column) = place.map_or(("shader".to_owned(), 0, 0), |p| (p.file, p.line, p.column));
+        ReportPlace { shader, layer: layer_name, file, line, column }
     })
 }

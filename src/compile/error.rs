@@ -1,5 +1,6 @@
 //! Why there is no shader, or no group: each kind with a stable code.
 
+use crate::ir::verify::VerifyError;
 use crate::lang::types::Type;
 use std::fmt;
 use velour_grammar::{Diagnostics, Format, Sources};
@@ -129,6 +130,11 @@ pub enum GroupProblem {
         /// What the output is.
         given: Type,
     },
+    /// G0401: the program of the group is more than the machine takes, or breaks another promise.
+    CannotRun {
+        /// Which.
+        error: VerifyError,
+    },
 }
 
 impl GroupProblem {
@@ -144,6 +150,7 @@ impl GroupProblem {
             GroupProblem::TooMany { .. } => "G0302",
             GroupProblem::NotAnInt { .. } => "G0303",
             GroupProblem::CannotFeed { .. } => "G0304",
+            GroupProblem::CannotRun { .. } => "G0401",
         }
     }
 }
@@ -172,6 +179,7 @@ impl fmt::Display for GroupProblem {
             GroupProblem::CannotFeed { path, wanted, given } => {
                 write!(f, "a {given} cannot feed the {wanted} `{path}`")
             }
+            GroupProblem::CannotRun { error } => write!(f, "the shader cannot be run: {error}"),
         }
     }
 }

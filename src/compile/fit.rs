@@ -147,7 +147,7 @@ pub(super) fn param_error(layer: &Layer, name: &str, problem: GroupProblem) -> G
 #[cfg(test)]
 mod tests {
     use crate::compile::{Compiler, GroupBuilder};
-    use crate::exec::{Machine, Points, Report};
+    use crate::exec::{Machine, Points};
 
     /// A shader with parameters of every shape, which prints them all.
     const SHAPES: &str = "struct T { color c; float w[2]; }; \
@@ -169,7 +169,7 @@ mod tests {
         Ok(machine
             .take_reports()
             .into_iter()
-            .map(|r| if let Report::Output(text) = r { text } else { String::new() })
+            .map(|report| report.text)
             .collect())
     }
 

@@ -1,6 +1,6 @@
 //! Array elements chosen at run time, one index a lane.
 
-use super::machine::Run;
+use super::run::Run;
 use crate::ir::program::*;
 use velour_grammar::Span;
 
@@ -13,16 +13,13 @@ impl Run<'_> {
             return wanted as usize;
         }
         if self.s.mask[lane] != 0 {
-            let place = (self.group.locate)(span);
-            let message = format!("{place}: error: index {wanted} is outside 0..{}", len.saturating_sub(1));
-            self.report_once(lane, message);
+            let message = match len.checked_sub(1) {
+                Some(last) => format!("index {wanted} is outside 0..{last}"),
+                None => format!("index {wanted} is outside an array without elements"),
+            };
+            self.report_once(lane, span, message);
         }
         (wanted.max(0) as usize).min(len.saturating_sub(1) as usize)
-    }
-
-    /// A lane that is here, to report what concerns all of them.
-    pub(super) fn first_active(&self) -> usize {
-        self.s.mask.iter().position(|&m| m != 0).unwrap_or(0)
     }
 
     /// The component each lane wants, kept inside.
@@ -54,6 +51,15 @@ impl Run<'_> {
 
     pub(super) fn array_get(&mut self, dst: Reg, array: ArrayId, component: u32, index: Reg, span: Span) {
         let info = self.group.program.arrays[array.0 as usize];
+        if info.len == 0 {
+            self.checked(index, self.first_active(), 0, span);
+            match info.kind {
+                Kind::Float => self.regs.floats[dst.0 as usize].fill(0.0),
+                Kind::Int | Kind::String => self.regs.ints[dst.0 as usize].fill(0),
+                Kind::Closure => self.regs.closures[dst.0 as usize] = None,
+            }
+            return;
+        }
         if info.kind == Kind::Closure {
             return self.closure_array_get(dst, array, index, span);
         }
@@ -90,6 +96,10 @@ impl Run<'_> {
         span: Span,
     ) {
         let info = self.group.program.arrays[array.0 as usize];
+        if info.len == 0 {
+            self.checked(index, self.first_active(), 0, span);
+            return;
+        }
         if info.kind == Kind::Closure {
             return self.closure_array_set(array, index, src, masked, span);
         }

@@ -1,6 +1,6 @@
 //! Closures: building the tree of the batch.
 
-use super::machine::Run;
+use super::run::Run;
 use crate::closure::tree::{Floats, Ints, Node, NodeId, Param};
 use crate::ir::program::*;
 use crate::lang::closures::{ClosureId, ParamKind};
@@ -33,7 +33,10 @@ impl Run<'_> {
 
     /// The parameter of a kind that starts at the front of `regs`, which it takes off.
     fn param(&mut self, kind: ParamKind, regs: &mut &[Reg]) -> Param {
-        let width = if matches!(kind, ParamKind::Color | ParamKind::Vector | ParamKind::Normal) { 3 } else { 1 };
+        let width = match kind {
+            ParamKind::Color | ParamKind::Vector | ParamKind::Normal => 3,
+            ParamKind::Float | ParamKind::Int | ParamKind::String | ParamKind::Closure => 1,
+        };
         let (own, rest) = regs.split_at(width);
         *regs = rest;
         match kind {

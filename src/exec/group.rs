@@ -1,8 +1,10 @@
 //! A compiled shader group: what a host makes once and shades with for ever.
 
+use super::report::ReportPlace;
 use crate::closure::Library;
-use crate::ir::op::{Input, Routine};
+use crate::ir::op::{Input, Reach};
 use crate::ir::program::*;
+use crate::ir::verify::{VerifyError, verify};
 use crate::lang::closures::{ClosureId, ClosureSpec, ClosureTable};
 use crate::lang::globals::Global;
 use std::collections::HashSet;
@@ -12,8 +14,8 @@ use velour_grammar::Span;
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(1);
 
-/// Turns a span of the program into text for a message, such as `cloth.osl:3:5`.
-pub type Locate = Arc<dyn Fn(Span) -> String + Send + Sync>;
+/// Turns a span of the program into the place where it was written.
+pub type Locate = Arc<dyn Fn(Span) -> ReportPlace + Send + Sync>;
 
 /// A compiled, optimised shader group.
 #[derive(Clone)]
@@ -37,7 +39,11 @@ impl std::fmt::Debug for Group {
 
 impl Group {
     /// A group of an optimised program.
-    pub fn new(program: Program, library: Arc<Library>, locate: Locate) -> Self {
+    ///
+    /// # Errors
+    /// The first promise of [`crate::ir::verify`] that the program breaks.
+    pub fn new(program: Program, library: Arc<Library>, locate: Locate) -> Result<Self, VerifyError> {
+        verify(&program, library.table())?;
         let mut read = vec![0u32; program.regs.len()];
         let mut closures = Vec::new();
         visit_instrs(&program.body, &mut |instr| {
@@ -56,13 +62,13 @@ impl Group {
         }
         let inputs = program.regs.iter().enumerate().filter_map(|(i, info)| match info.source {
             Source::Input(input) if read[i] > 0 => Some((Reg(i as u32), input)),
-            _ => None,
+            Source::Input(_) | Source::Const(_) | Source::Code => None,
         });
         let inputs = Arc::new(inputs.collect());
         let mut spent = vec![false; program.regs.len()];
         mark_spent(&program, &program.body, &read, &mut spent);
         let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
-        Group {
+        Ok(Group {
             id,
             program: Arc::new(program),
             library,
@@ -70,7 +76,7 @@ impl Group {
             inputs,
             spent: Arc::new(spent),
             closures: Arc::new(closures),
-        }
+        })
     }
 
     /// The program.
@@ -139,13 +145,13 @@ impl Group {
     pub fn varies_on_object(&self) -> bool {
         let mut rays = false;
         visit_instrs(&self.program.body, &mut |instr| {
-            rays |= matches!(instr, Instr::Call { routine: Routine::RayType, .. });
+            rays |= matches!(instr, Instr::Call { routine, .. } if routine.declaration().reach == Reach::Lane);
         });
         rays || self.inputs.iter().any(|(_, input)| *input != Input::SurfaceArea)
     }
 
-    /// A place noted in a closure tree, as `file:line:column`.
-    pub fn place(&self, site: u32) -> String {
+    /// A place noted in a closure tree.
+    pub fn place(&self, site: u32) -> ReportPlace {
         (self.locate)(Span { first: site, last: site })
     }
 }

@@ -10,16 +10,26 @@
 
 mod arrays;
 mod closures;
+mod code;
 mod group;
 mod host;
 mod kernels;
+mod lane;
 mod machine;
 mod noise;
+mod output;
 mod points;
+mod questions;
+mod registers;
+mod report;
 mod routines;
+mod run;
+mod smooth;
 mod text;
 
 pub use group::{Group, Locate};
-pub use host::{Attribute, Host, Report};
+pub use host::{Attribute, AttributeAnswer, AttributeRequest, Host, PlainHost, built_in_space};
 pub use machine::{DEFAULT_BUDGET, Machine};
+pub use output::{OutputView, Values};
 pub use points::{MAX_LANES, Points, RAY_TYPES};
+pub use report::{Report, ReportKind, ReportPlace};

@@ -1,6 +1,6 @@
 //! Noise over lanes.
 
-use super::machine::Run;
+use super::run::Run;
 use crate::ir::op::{Noise, NoiseKind};
 use crate::ir::program::Reg;
 use crate::lanes;

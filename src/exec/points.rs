@@ -144,7 +144,13 @@ impl Points {
             Input::GlobalDy(Global::V, _) => return Some(&self.dvdy),
             Input::Global(Global::Time, _) => return Some(&self.time),
             Input::SurfaceArea => return Some(&self.surface_area),
-            _ => return None,
+            // Nothing moves: these are zero, and so is what has no derivative here.
+            Input::Global(Global::Dtime | Global::DPdtime | Global::Ci, _) => return None,
+            Input::GlobalDx(Global::N | Global::Ng | Global::DPdu | Global::DPdv | Global::Time, _) => return None,
+            Input::GlobalDy(Global::N | Global::Ng | Global::DPdu | Global::DPdv | Global::Time, _) => return None,
+            Input::GlobalDx(Global::Dtime | Global::DPdtime | Global::Ci, _) => return None,
+            Input::GlobalDy(Global::Dtime | Global::DPdtime | Global::Ci, _) => return None,
+            Input::Backfacing => return None,
         };
         Some(match triple.1 {
             0 => &triple.0.x,

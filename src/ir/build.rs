@@ -113,7 +113,7 @@ impl Builder {
 
     /// The register of an input.
     pub fn input(&mut self, input: Input) -> Reg {
-        let kind = if input == Input::Backfacing { Kind::Int } else { Kind::Float };
+        let kind = input.kind();
         let regs = &mut self.program.regs;
         *self.inputs.entry(input).or_insert_with(|| {
             regs.push(RegInfo { kind, source: Source::Input(input), mutable: false, uniform: false });
@@ -266,9 +266,10 @@ impl Builder {
         dst
     }
 
-    /// A routine with so many results of the kinds given.
-    pub fn call(&mut self, routine: Routine, kinds: &[Kind], src: Vec<Reg>, span: velour_grammar::Span) -> Vec<Reg> {
-        let dst: Vec<Reg> = kinds.iter().map(|&kind| self.program.reg(kind, false)).collect();
+    /// A routine, with new registers for the results that it declares.
+    pub fn call(&mut self, routine: Routine, src: Vec<Reg>, span: velour_grammar::Span) -> Vec<Reg> {
+        let gives = routine.declaration().gives;
+        let dst: Vec<Reg> = each(&gives).map(|kind| self.program.reg(kind, false)).collect();
         self.instr(Instr::Call { routine, dst: dst.clone(), src, span });
         dst
     }

@@ -13,8 +13,11 @@
 
 pub mod build;
 pub mod fold;
+pub mod kind;
 pub mod lower;
+pub mod noise;
 pub mod op;
 pub mod print;
 pub mod program;
+pub mod routine;
 pub mod verify;

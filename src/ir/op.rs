@@ -1,6 +1,10 @@
 //! The operations of a program. Every one works on single numbers: a triple is three registers, a matrix sixteen.
 
+use super::kind::Kind;
 use crate::lang::globals::Global;
+use crate::lang::types::Base;
+
+pub use super::routine::*;
 
 /// Float to float.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -138,177 +142,6 @@ pub enum Test {
     Finite,
 }
 
-/// The kinds of noise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum NoiseKind {
-    /// Perlin's gradient noise, -1..1.
-    Perlin,
-    /// The same, 0..1.
-    UPerlin,
-    /// Simplex noise, -1..1.
-    Simplex,
-    /// The same, 0..1.
-    USimplex,
-    /// One random number a unit cell.
-    Cell,
-    /// One random number a point.
-    Hash,
-}
-
-impl NoiseKind {
-    /// All kinds.
-    pub const ALL: &[NoiseKind] = {
-        use NoiseKind::*;
-        &[Perlin, UPerlin, Simplex, USimplex, Cell, Hash]
-    };
-
-    /// The names that `noise` and `pnoise` know it by.
-    pub fn names(self) -> &'static [&'static str] {
-        match self {
-            NoiseKind::Perlin => &["perlin", "snoise"],
-            NoiseKind::UPerlin => &["uperlin", "noise"],
-            NoiseKind::Simplex => &["simplex"],
-            NoiseKind::USimplex => &["usimplex"],
-            NoiseKind::Cell => &["cell"],
-            NoiseKind::Hash => &["hash"],
-        }
-    }
-
-    /// The kind of a name.
-    pub fn from_name(name: &str) -> Option<NoiseKind> {
-        NoiseKind::ALL.iter().copied().find(|kind| kind.names().contains(&name))
-    }
-
-    /// Is there a periodic form of it?
-    pub fn repeats(self) -> bool {
-        !matches!(self, NoiseKind::Simplex | NoiseKind::USimplex)
-    }
-}
-
-/// A noise function: its kind, its shape, and whether it repeats.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Noise {
-    /// The kind.
-    pub kind: NoiseKind,
-    /// How many coordinates it takes: 1 to 4. Periods, when it repeats, follow the coordinates.
-    pub dims: u8,
-    /// How many numbers it gives: 1 or 3.
-    pub outputs: u8,
-    /// True when it repeats.
-    pub periodic: bool,
-    /// True when the partial derivatives follow the values, coordinate by coordinate.
-    pub gradient: bool,
-}
-
-/// Work that is more than one arithmetic step. Sources and results are lists of registers.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Routine {
-    /// Noise.
-    Noise(Noise),
-    /// `spline`: basis symbol, x, how many knots count, then knots of one component; gives the value, and its slope in x.
-    Spline,
-    /// `splineinverse`: basis symbol, value, knots; gives the place, and its slope in the value.
-    SplineInverse,
-    /// Inverse of a matrix: 16 to 16.
-    MatrixInverse,
-    /// Determinant of a matrix.
-    Determinant,
-    /// The matrix from one named space to another: two symbols to 16 and an int that is 1 when both are known.
-    SpaceMatrix,
-    /// The number of a component, kept inside `0..n`; one that is outside is reported.
-    ClampIndex(u32),
-    /// `blackbody`
-    Blackbody,
-    /// `wavelength_color`
-    WavelengthColor,
-    /// `transformc`: from, to, color.
-    TransformColor,
-    /// The change of `transformc`: from, to, color, its change.
-    TransformColorSlope,
-    /// `transformu`: from, to, length.
-    TransformUnit,
-    /// `hash` of an int.
-    HashInt,
-    /// `hash` of 1 to 4 floats.
-    HashFloats,
-    /// `hash` of a string.
-    HashString,
-    /// `strlen`
-    Strlen,
-    /// `getchar`
-    GetChar,
-    /// `startswith`
-    StartsWith,
-    /// `endswith`
-    EndsWith,
-    /// `substr`
-    Substr,
-    /// `concat`
-    Concat,
-    /// `stof`
-    Stof,
-    /// `stoi`
-    Stoi,
-    /// `regex_search` (false) or `regex_match` (true), with as many positions as there are further results.
-    Regex(bool),
-    /// `split`: text, separators, most; gives the count, then the parts.
-    Split,
-    /// `format` to a symbol.
-    Format(TextFormat),
-    /// Writes text.
-    Print(PrintTo, TextFormat),
-    /// Does the ray have this type? Symbol to int.
-    RayType,
-    /// A named attribute of the renderer: symbols of object and name to an int and the values.
-    Attribute(AttributeType),
-}
-
-/// Where text goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PrintTo {
-    /// `printf`
-    Output,
-    /// `fprintf`: the first source is the file's symbol.
-    File,
-    /// `warning`
-    Warning,
-    /// `error`
-    Error,
-}
-
-/// A format string and how the sources that follow group into its arguments.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TextFormat {
-    /// The format.
-    pub text: String,
-    /// What each argument is made of.
-    pub args: Vec<TextArg>,
-}
-
-/// One argument of a format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TextArg {
-    /// So many ints.
-    Ints(u32),
-    /// So many floats.
-    Floats(u32),
-    /// So many strings.
-    Strings(u32),
-    /// A closure.
-    Closure,
-}
-
-/// The type an attribute is asked as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AttributeType {
-    /// So many ints.
-    Ints(u32),
-    /// So many floats.
-    Floats(u32),
-    /// So many strings.
-    Strings(u32),
-}
-
 /// What a shading point gives besides the globals of the language, and the derivatives of those.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Input {
@@ -322,4 +155,24 @@ pub enum Input {
     SurfaceArea,
     /// `backfacing()`
     Backfacing,
+}
+
+impl Input {
+    /// What its register holds.
+    pub fn kind(self) -> Kind {
+        match self {
+            Input::Global(..) | Input::GlobalDx(..) | Input::GlobalDy(..) | Input::SurfaceArea => Kind::Float,
+            Input::Backfacing => Kind::Int,
+        }
+    }
+
+    /// Is there such an input? `Ci` is none, and a component is one that the global has.
+    pub fn exists(self) -> bool {
+        match self {
+            Input::Global(global, c) | Input::GlobalDx(global, c) | Input::GlobalDy(global, c) => {
+                usize::from(c) < global.ty().base().map_or(0, Base::floats)
+            }
+            Input::SurfaceArea | Input::Backfacing => true,
+        }
+    }
 }

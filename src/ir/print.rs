@@ -170,7 +170,7 @@ fn routine_name(routine: &Routine) -> String {
         }
         Routine::Format(format) => format!("format {:?}", format.text),
         Routine::Print(to, format) => format!("print {} {:?}", snake(&format!("{to:?}")), format.text),
-        other => snake(&format!("{other:?}")),
+        other => other.name().to_owned(),
     }
 }
 

@@ -10,6 +10,8 @@ use crate::lang::closures::ClosureId;
 use crate::lang::types::Type;
 use velour_grammar::Span;
 
+pub use super::kind::Kind;
+
 /// A register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Reg(pub u32);
@@ -21,19 +23,6 @@ pub struct ArrayId(pub u32);
 /// A scope that lanes can leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ScopeId(pub u32);
-
-/// What a register holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// A float.
-    Float,
-    /// An int.
-    Int,
-    /// A symbol.
-    String,
-    /// A closure.
-    Closure,
-}
 
 /// A value known before the program runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -258,7 +247,7 @@ impl Program {
     pub fn constant(&self, reg: Reg) -> Option<Const> {
         match self.regs[reg.0 as usize].source {
             Source::Const(value) => Some(value),
-            _ => None,
+            Source::Input(_) | Source::Code => None,
         }
     }
 
@@ -314,7 +303,16 @@ impl Instr {
 
     /// True when the instruction does something besides writing its registers.
     pub fn has_effect(&self) -> bool {
-        matches!(self, Instr::Call { routine: Routine::Print(..), .. })
+        match self {
+            Instr::Call { routine, .. } => routine.declaration().effect != Effect::None,
+            // An array matters to those who read it, which is for the reader of the program to find out.
+            Instr::ArraySet { .. } => false,
+            Instr::Unary(..) | Instr::Binary(..) | Instr::Fused(..) | Instr::Compare(..) | Instr::Test(..) => false,
+            Instr::IntUnary(..) | Instr::IntBinary(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => false,
+            Instr::Select(..) | Instr::Move { .. } | Instr::Derivative(..) | Instr::ArrayGet { .. } => false,
+            Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => false,
+            Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => false,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! RGB means linear light with the primaries and the white of Rec. 709, which is what OSL assumes unless told otherwise.
 
-use super::arithmetic::{max, min, pow};
+use super::arithmetic::{div, max, min, pow};
 use super::matching::CIE_1931;
 use crate::math::elementary::{cbrt, expm1, floor, pow_positive};
 use std::sync::LazyLock;
@@ -63,6 +63,22 @@ static BLACKBODY: LazyLock<[[f32; 3]; ENTRIES]> = LazyLock::new(|| {
 
 /// The colour of a black body by Planck's law, integrated over the visible range in steps of 5 nm.
 fn blackbody_by_integral(kelvin: f32) -> [f32; 3] {
+    without_negatives(times(planck(|c, x| c / expm1(x), kelvin), &XYZ_TO_RGB))
+}
+
+/// The change of [`blackbody_by_integral`] when the temperature changes by a kelvin.
+fn blackbody_by_integral_slope(kelvin: f32) -> [f32; 3] {
+    // The derivative of 1 / expm1(x) by T, where x is as 1 / T, is x / T times e^x / expm1(x)^2.
+    let slope = |c: f32, x: f32| {
+        let below = expm1(x);
+        c * (1.0 + 1.0 / below) / below * x / kelvin
+    };
+    let (value, slope) = (blackbody_by_integral(kelvin), times(planck(slope, kelvin), &XYZ_TO_RGB));
+    [0, 1, 2].map(|k| if value[k] > 0.0 { slope[k] } else { 0.0 })
+}
+
+/// The XYZ of what `part` makes of Planck's `c = C1 / metres⁵` and `x = C2 / (metres kelvin)`, in steps of 5 nm.
+fn planck(part: impl Fn(f32, f32) -> f32, kelvin: f32) -> [f32; 3] {
     // 2 pi h c^2 in W m^2 and h c / k in m K, with the digits that OSL uses.
     const C1: f32 = 3.741_83e-16;
     const C2: f32 = 1.438_8e-2;
@@ -71,12 +87,12 @@ fn blackbody_by_integral(kelvin: f32) -> [f32; 3] {
         let metres = (380.0 + 5.0 * i as f32) * 1e-9;
         // The fifth power is below the least normal f32.
         let fifth = (metres as f64).powi(5);
-        let exitance = (C1 as f64 / fifth) as f32 / expm1(C2 / (metres * kelvin)) * 5e-9;
+        let exitance = part((C1 as f64 / fifth) as f32, C2 / (metres * kelvin)) * 5e-9;
         for k in 0..3 {
             xyz[k] += exitance * match_[k];
         }
     }
-    without_negatives(times(xyz, &XYZ_TO_RGB))
+    xyz
 }
 
 /// The linear RGB radiant exitance (W/m^2, weighted by the matching functions) of a black body.
@@ -88,11 +104,7 @@ pub fn blackbody(kelvin: f32) -> [f32; 3] {
         return blackbody_by_integral(kelvin);
     }
     if kelvin >= COLDEST {
-        let root = cbrt((kelvin - COLDEST) / 2.0);
-        let place = root * root;
-        let first = (place as usize).min(ENTRIES - 2);
-        let t = place - first as f32;
-        let (a, b) = (BLACKBODY[first], BLACKBODY[first + 1]);
+        let (a, b, t, _) = table_place(kelvin);
         return [0, 1, 2].map(|k| {
             let fifth_root = a[k] * (1.0 - t) + b[k] * t;
             let square = fifth_root * fifth_root;
@@ -100,6 +112,32 @@ pub fn blackbody(kelvin: f32) -> [f32; 3] {
         });
     }
     [1e-6, 0.0, 0.0]
+}
+
+/// Between which two entries of the table a temperature falls, where, and the cube root that its place is the square of.
+fn table_place(kelvin: f32) -> ([f32; 3], [f32; 3], f32, f32) {
+    let root = cbrt((kelvin - COLDEST) / 2.0);
+    let place = root * root;
+    let first = (place as usize).min(ENTRIES - 2);
+    (BLACKBODY[first], BLACKBODY[first + 1], place - first as f32, root)
+}
+
+/// The change of [`blackbody`] when the temperature changes by a kelvin; 0 where it is constant.
+pub fn blackbody_slope(kelvin: f32) -> [f32; 3] {
+    if kelvin >= HOTTEST {
+        return blackbody_by_integral_slope(kelvin);
+    }
+    if kelvin >= COLDEST {
+        let (a, b, t, root) = table_place(kelvin);
+        // The place is ((T - coldest) / 2)^(2/3).
+        let step = div(1.0, 3.0 * root);
+        return [0, 1, 2].map(|k| {
+            let fifth_root = a[k] * (1.0 - t) + b[k] * t;
+            let square = fifth_root * fifth_root;
+            5.0 * square * square * (b[k] - a[k]) * step
+        });
+    }
+    [0.0; 3]
 }
 
 /// The linear RGB of light of a single wavelength, brought to at most about 1.
@@ -116,6 +154,18 @@ pub fn wavelength_color(nanometres: f32) -> [f32; 3] {
     let t = place - first as f32;
     let xyz = [0, 1, 2].map(|k| CIE_1931[first][k] * (1.0 - t) + CIE_1931[first + 1][k] * t);
     without_negatives(times(xyz, &XYZ_TO_RGB).map(|c| c * (1.0 / 2.52)))
+}
+
+/// The change of [`wavelength_color`] when the wavelength changes by a nanometre; 0 where a channel is.
+pub fn wavelength_color_slope(nanometres: f32) -> [f32; 3] {
+    let place = (nanometres - 380.0) / 5.0;
+    if !(place > -1.0 && place < 80.0) {
+        return [0.0; 3];
+    }
+    let first = place as usize;
+    let xyz = [0, 1, 2].map(|k| (CIE_1931[first + 1][k] - CIE_1931[first][k]) / 5.0);
+    let (value, slope) = (wavelength_color(nanometres), times(xyz, &XYZ_TO_RGB));
+    [0, 1, 2].map(|k| if value[k] > 0.0 { slope[k] * (1.0 / 2.52) } else { 0.0 })
 }
 
 /// A colour space that [`transformc`] knows.

@@ -91,6 +91,25 @@ pub fn inverse(m: &Matrix) -> Matrix {
     if singular { IDENTITY } else { adjugate.map(|a| (a * scale) as f32) }
 }
 
+/// How [`determinant`] changes when `m` changes by `d`: it is linear in each row.
+pub fn determinant_change(m: &Matrix, d: &Matrix) -> f32 {
+    let with_row = |row: usize| {
+        let mut changed = *m;
+        changed[4 * row..4 * row + 4].copy_from_slice(&d[4 * row..4 * row + 4]);
+        determinant(&changed)
+    };
+    with_row(0) + with_row(1) + with_row(2) + with_row(3)
+}
+
+/// How [`inverse`] changes, where it gave `inverse`, when `m` changes by `d`: `-m⁻¹ d m⁻¹`; nothing for a singular `m`.
+pub fn inverse_change(m: &Matrix, inverse: &Matrix, d: &Matrix) -> Matrix {
+    let det = determinant(m);
+    if det == 0.0 || !det.is_finite() {
+        return [0.0; 16];
+    }
+    multiply(&multiply(inverse, d), inverse).map(|x| -x)
+}
+
 /// A point, with the division by w; the origin when w is 0, as OSL has it.
 #[inline(always)]
 pub fn transform_point(m: &Matrix, p: [f32; 3]) -> [f32; 3] {

@@ -1,5 +1,6 @@
 //! Splines through or near knots, their slope, and the search for the place where one has a given value.
 
+use super::arithmetic::div;
 use std::array;
 
 /// How the knots shape the curve.
@@ -111,19 +112,30 @@ pub fn spline_slope(basis: Basis, x: f32, count: usize, knot: impl Fn(usize) -> 
     if (0.0..=1.0).contains(&x) { slope } else { 0.0 }
 }
 
+/// How [`spline`] changes when `x` changes by `dx` and the knots by `change`.
+pub fn spline_change(
+    basis: Basis,
+    x: f32,
+    count: usize,
+    knot: impl Fn(usize) -> f32,
+    dx: f32,
+    change: impl Fn(usize) -> f32,
+) -> f32 {
+    spline_slope(basis, x, count, knot) * dx + spline(basis, x, count, change)
+}
+
 /// The `x` at which the spline through monotonic knots has the value `y`.
 ///
 /// Source: OSL; within a segment, false position and then bisection. Domain: monotonic knots. Gives: [0, 1], to 1e-6.
 /// Degenerate cases: an end of the interval for values beyond the knots; without knots 0. Departs from source: the Illinois
 /// rule (Dowell and Jarratt 1971) keeps false position from stalling, where OSL's search ends far from the place.
-pub fn splineinverse(basis: Basis, y: f32, knots: &[f32]) -> f32 {
-    let count = knots.len();
+pub fn splineinverse(basis: Basis, y: f32, count: usize, knot: impl Fn(usize) -> f32) -> f32 {
     if count < 4 {
         return 0.0;
     }
     let inner = usize::from(basis.stride() == 1);
-    let (low, high) = (knots[inner], knots[count - 1 - inner]);
-    let increasing = knots[1] < knots[count - 2];
+    let (low, high) = (knot(inner), knot(count - 1 - inner));
+    let increasing = knot(1) < knot(count - 2);
     if (increasing && y <= low) || (!increasing && y >= low) {
         return 0.0;
     }
@@ -132,7 +144,7 @@ pub fn splineinverse(basis: Basis, y: f32, knots: &[f32]) -> f32 {
     }
     // Monotonic knots can still give a curve that is not, so each segment is searched by itself.
     let inverse = 1.0 / segments(basis, count) as f32;
-    let value = |x| spline(basis, x, count, |k| knots[k]);
+    let value = |x| spline(basis, x, count, &knot);
     let mut x = 0.0;
     for segment in 0..segments(basis, count) {
         let (found, at) = solve(value, y, inverse * segment as f32, inverse * (segment + 1) as f32);
@@ -142,6 +154,24 @@ pub fn splineinverse(basis: Basis, y: f32, knots: &[f32]) -> f32 {
         }
     }
     x
+}
+
+/// How [`splineinverse`] changes, where it gave `x`, when the value changes by `dy` and the knots by `change`.
+///
+/// The spline at `x` keeps having the value: `S'(x) dx + S(x; change) = dy`. Degenerate cases: 0 at an end of the interval, where
+/// values beyond the knots land, and where the spline is level.
+pub fn splineinverse_change(
+    basis: Basis,
+    x: f32,
+    count: usize,
+    knot: impl Fn(usize) -> f32,
+    dy: f32,
+    change: impl Fn(usize) -> f32,
+) -> f32 {
+    if !(x > 0.0 && x < 1.0) {
+        return 0.0;
+    }
+    div(dy - spline(basis, x, count, change), spline_slope(basis, x, count, knot))
 }
 
 /// Looks for `value(x) = y` in [low, high]; says whether the ends bracket `y`, and the place or the nearer end.
@@ -225,12 +255,12 @@ mod tests {
             for k in 1..20 {
                 let x = k as f32 / 20.0;
                 let y = at(basis, x);
-                assert!((at(basis, splineinverse(basis, y, &KNOTS)) - y).abs() < 1e-4, "{name} at {x}");
+                assert!((at(basis, splineinverse(basis, y, 7, |k| KNOTS[k])) - y).abs() < 1e-4, "{name} at {x}");
             }
         }
-        assert_eq!(splineinverse(Basis::Linear, -1.0, &KNOTS), 0.0);
-        assert_eq!(splineinverse(Basis::Linear, 9.0, &KNOTS), 1.0);
-        assert_eq!(splineinverse(Basis::Linear, 0.5, &[1.0]), 0.0);
+        assert_eq!(splineinverse(Basis::Linear, -1.0, 7, |k| KNOTS[k]), 0.0);
+        assert_eq!(splineinverse(Basis::Linear, 9.0, 7, |k| KNOTS[k]), 1.0);
+        assert_eq!(splineinverse(Basis::Linear, 0.5, 1, |_| 1.0), 0.0);
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod uniform;
 
 use crate::ir::program::Program;
 use crate::ir::verify::debug_verify;
+use crate::lang::closures::ClosureTable;
 
 /// Which passes run besides the ones a program cannot do without.
 #[derive(Clone, Copy, Debug)]
@@ -29,24 +30,24 @@ impl Default for OptimizeOptions {
     }
 }
 
-/// Prepares a lowered program for the machine. In debug builds each pass is held to what a program promises.
-pub fn optimize(mut program: Program, options: OptimizeOptions) -> Program {
-    debug_verify(&program);
+/// Prepares a lowered program, which calls the closures of a table, for the machine. In debug builds each pass is held to what a program promises.
+pub fn optimize(mut program: Program, table: &ClosureTable, options: OptimizeOptions) -> Program {
+    debug_verify(&program, table);
     if options.dead_code {
         dead::remove(&mut program);
-        debug_verify(&program);
+        debug_verify(&program, table);
     }
     derive::expand(&mut program);
-    debug_verify(&program);
+    debug_verify(&program, table);
     if options.dead_code {
         dead::remove(&mut program);
     }
     uniform::mark(&mut program, options.uniform);
-    debug_verify(&program);
+    debug_verify(&program, table);
     // Last, because the passes before it know single operations only.
     if options.fuse {
         fuse::pairs(&mut program);
-        debug_verify(&program);
+        debug_verify(&program, table);
     }
     program
 }

@@ -5,7 +5,7 @@
 //! under it, and each way out of a scope to what follows.
 
 use super::flow::Flow;
-use crate::ir::op::Routine;
+use crate::ir::op::Reach;
 use crate::ir::program::*;
 
 struct Walk<'p> {
@@ -64,7 +64,9 @@ impl Walk<'_> {
             (0..program.arrays.len()).for_each(|at| self.set_array(ArrayId(at as u32)));
         }
         for node in 0..self.flow.nodes.len() {
-            if let Node::Instr(instr @ Instr::Call { routine: Routine::RayType, .. }) = self.flow.nodes[node].node {
+            if let Node::Instr(instr @ Instr::Call { routine, .. }) = self.flow.nodes[node].node
+                && routine.declaration().reach == Reach::Lane
+            {
                 self.set_written(instr);
             }
         }

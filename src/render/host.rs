@@ -1,7 +1,7 @@
 //! What shaders may ask of the renderer beside their points: the camera's space and a few attributes.
 
 use super::settings::Settings;
-use crate::exec::{Attribute, Host};
+use crate::exec::{Attribute, PlainHost};
 use crate::ops::matrix::Matrix;
 use crate::scene::Camera;
 use glam::Vec3;
@@ -15,8 +15,8 @@ const CLIP: [f32; 2] = [0.1, 1000.0];
 ///
 /// Differs from OSL: testrender's camera space is the world's; here it is the camera's, with x to the right, y up, z
 /// forward and the eye at the origin. `fov` is the scene's own number, not the angle that the picture spans.
-pub fn host(camera: &Camera, settings: &Settings) -> Host {
-    let mut host = Host::default();
+pub fn host(camera: &Camera, settings: &Settings) -> PlainHost {
+    let mut host = PlainHost::default();
     host.spaces.insert("camera".to_owned(), camera_to_common(camera));
     let aspect = settings.width as f32 / settings.height as f32;
     let attributes = [

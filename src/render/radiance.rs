@@ -85,7 +85,7 @@ fn mean_emission(scene: &Scene, plan: &Plan, shading: &mut Shading, primitive: u
 }
 
 /// The background: a constant where it is one, or a shader, with a table when it is to be sampled.
-pub fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading, host: &Arc<Host>) -> Sky {
+pub fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shading, host: &Arc<dyn Host>) -> Sky {
     let Some(background) = scene.background else { return Sky::Constant(Vec3::ZERO) };
     let material = background.material as usize;
     let group = &scene.materials[material].surface;
@@ -102,7 +102,7 @@ pub fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shadin
 }
 
 /// The brightest channel of the background at the centre of each cell of its table.
-fn sky_brightness(group: &Group, side: usize, settings: &Settings, host: &Arc<Host>) -> Vec<f32> {
+fn sky_brightness(group: &Group, side: usize, settings: &Settings, host: &Arc<dyn Host>) -> Vec<f32> {
     let mut brightness = vec![0.0; side * side];
     brightness.par_chunks_mut(side).enumerate().for_each_init(
         || Shading::new(settings.closure, host.clone()),

@@ -14,7 +14,7 @@ use super::tile::Tile;
 use super::trace::render_tile;
 use super::wave::Wave;
 use super::world::World;
-use crate::exec::{Group, Report};
+use crate::exec::{Group, Report, ReportPlace};
 use crate::scene::{Camera, Scene};
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -68,10 +68,7 @@ impl Gathered {
 
     /// The first report that a shader cannot be run.
     fn check(&self) -> Result<(), RenderError> {
-        let fatal = |report: &Report| match report {
-            Report::Fatal(message) => Some(RenderError::Shader(message.clone())),
-            Report::Output(_) | Report::File(..) | Report::Warning(_) | Report::Error(_) => None,
-        };
+        let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
         self.reports.iter().find_map(fatal).map_or(Ok(()), Err)
     }
 }
@@ -289,15 +286,14 @@ fn empty_waves(pool: &rayon::ThreadPool) -> Vec<Mutex<Option<Wave>>> {
 /// Differs from OSL: what shaders print while rendering comes out sorted and each text once, since lanes, tiles and
 /// threads have no order of their own. `velour tree` prints as written.
 fn reports(scene: &Scene, mut reports: Vec<Report>, dropped: &Dropped) -> Vec<Report> {
-    reports.sort_by_key(|report| format!("{report:?}"));
-    reports.dedup();
+    reports.sort_by_key(Report::key);
+    reports.dedup_by_key(|report| report.key());
     if dropped.count > 0 {
         let material = dropped.material.checked_sub(1).and_then(|m| scene.materials.get(m));
-        let (place, name) = material.map_or((String::new(), "?"), |m| (format!("{}: ", m.place), m.name.as_str()));
-        reports.push(Report::Error(format!(
-            "{place}error: shader group `{name}` gave light that is not a finite number; {} contributions were dropped",
-            dropped.count
-        )));
+        let (file, name) = material.map_or((String::new(), "?"), |m| (m.place.to_string(), m.name.as_str()));
+        let what = "gave light that is not a finite number";
+        let text = format!("shader group `{name}` {what}; {} contributions were dropped", dropped.count);
+        reports.push(Report::mistake(ReportPlace { file, ..ReportPlace::default() }, text));
     }
     reports
 }

@@ -35,7 +35,7 @@ pub struct Shading {
 
 impl Shading {
     /// Fresh scratch, for shaders that ask `host`.
-    pub fn new(settings: Settings, host: Arc<Host>) -> Self {
+    pub fn new(settings: Settings, host: Arc<dyn Host>) -> Self {
         Shading {
             points: Points::default(),
             toward: Column3::default(),
@@ -81,9 +81,9 @@ impl Shading {
         }
         news.extend(self.machine.take_reports());
         for report in news {
-            let fatal = matches!(report, Report::Fatal(_));
+            let fatal = report.is_fatal();
             self.failed |= fatal;
-            if self.told.len() < MOST_REPORTS && self.told.insert(format!("{report:?}")) || fatal {
+            if self.told.len() < MOST_REPORTS && self.told.insert(report.key()) || fatal {
                 self.reports.push(report);
             }
         }
@@ -140,9 +140,9 @@ fn report_dropped(group: &Group, tree: &Tree, lobes: &Lobes, reports: &mut Vec<R
         if last.replace(dropped.node) == Some(dropped.node) {
             continue;
         }
-        let place = tree.site(dropped.node).map_or(String::new(), |site| format!("{}: ", group.place(site)));
+        let place = tree.site(dropped.node).map(|site| group.place(site)).unwrap_or_default();
         let what = "is dropped where a parameter or weight of it is not a number";
-        let report = Report::Error(format!("{place}error: `{}` {what}", dropped.closure));
+        let report = Report::mistake(place, format!("`{}` {what}", dropped.closure));
         if !reports.contains(&report) {
             reports.push(report);
         }

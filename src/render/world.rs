@@ -28,7 +28,7 @@ pub struct World {
     /// The lights.
     pub lights: Lights,
     /// What shaders may ask.
-    pub host: Arc<Host>,
+    pub host: Arc<dyn Host>,
     /// The background.
     pub sky: Sky,
     /// The radiance of each object, where it is one constant; zero for objects that do not emit.
@@ -43,7 +43,7 @@ impl World {
     /// `accel` is over the scene's geometry. A `sky` that is given is taken as it is.
     pub fn new(accel: Arc<Accel>, scene: Scene, settings: Settings, sky: Option<Sky>) -> Self {
         let plan = Plan::new(&scene, &settings);
-        let host = Arc::new(super::host::host(&scene.camera, &settings));
+        let host: Arc<dyn Host> = Arc::new(super::host::host(&scene.camera, &settings));
         let mut shading = Shading::new(settings.closure, host.clone());
         let object_emission = radiance::constant_emission(&scene, &plan, &mut shading);
         let powers = radiance::light_powers(&scene, &plan, &mut shading, &object_emission);

@@ -43,13 +43,15 @@ const GROWING: &[&str] = &[
     "ParamKind",
     "ParamType",
     "Promise",
-    "Report",
+    "ReportKind",
     "Routine",
     "Shadowing",
     "Shape",
     "SheenAlbedo",
     "SheenSampling",
     "Sky",
+    "Slopes",
+    "Smooth",
     "Spread",
     "Stmt",
     "TopAlbedo",
@@ -59,18 +61,7 @@ const GROWING: &[&str] = &[
 ];
 
 /// Matches of growing enums that are open today, a count a file: a list that only gets shorter.
-const OPEN: &[(&str, &str, usize)] = &[
-    ("exec/points.rs", "Global", 1),
-    ("exec/routines.rs", "Attribute", 1),
-    ("exec/routines.rs", "Routine", 3),
-    ("ir/verify.rs", "Instr", 1),
-    ("optimize/derive/mod.rs", "Binary", 1),
-    ("optimize/derive/mod.rs", "Global", 1),
-    ("optimize/derive/mod.rs", "Instr", 2),
-    ("optimize/derive/mod.rs", "Routine", 1),
-    ("optimize/derive/rules.rs", "Binary", 2),
-    ("optimize/derive/rules.rs", "Unary", 1),
-];
+const OPEN: &[(&str, &str, usize)] = &[];
 
 /// The room of a file of `src`.
 fn room(path: &str) -> Option<usize> {

@@ -3,7 +3,6 @@
 use super::determinism::same_however_it_is_cut;
 use super::materials::{middle, picture_with};
 use velour::closure::Layering;
-use velour::exec::Report;
 use velour::render::{LightStrategy, Settings};
 
 /// Emits a half and, scaled by the view alone, reflects exactly a half, whatever the direction.
@@ -86,7 +85,8 @@ fn a_parameter_that_is_not_a_number_drops_its_lobe_and_is_told_once() {
     for (threads, batch_width) in [(1, 128), (2, 3)] {
         let image = picture_with(scene, &[torn], |s| (s.threads, s.batch_width) = (threads, batch_width));
         assert!(image.pixels.iter().all(|p| p.is_finite()));
-        let [Report::Error(report)] = image.about.reports.as_slice() else { panic!("{:?}", image.about.reports) };
+        let [report] = image.about.reports.as_slice() else { panic!("{:?}", image.about.reports) };
+        let report = report.to_string();
         assert!(report.starts_with("memory:5:10: error: `sheen` is dropped"), "{report}");
         let mean = |from: u32, to: u32| {
             let sum: f64 = (from..to)

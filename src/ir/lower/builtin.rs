@@ -1,7 +1,7 @@
 //! Builtin functions, each written out as operations on single numbers or as one routine.
 
 use super::state::Lower;
-use super::value::{Value, kind_of};
+use super::value::Value;
 use crate::check::typed::{Argument, Expr, ExprKind, VarId};
 use crate::ir::op::*;
 use crate::ir::program::*;
@@ -71,7 +71,7 @@ impl Lower<'_> {
                 vec![self.dot(a[0], &weights)]
             }
             "transform" => self.transform_call(a, args),
-            "determinant" => self.routine(Routine::Determinant, a, &[Kind::Float]),
+            "determinant" => self.routine(Routine::Smooth(Smooth::Determinant), a),
             "transpose" => (0..16).map(|i| a[0][4 * (i % 4) + i / 4]).collect(),
             "Dx" => a[0].iter().map(|&reg| self.b.derivative(reg, false)).collect(),
             "Dy" => a[0].iter().map(|&reg| self.b.derivative(reg, true)).collect(),
@@ -82,42 +82,41 @@ impl Lower<'_> {
             "calculatenormal" => self.calculate_normal(a[0]),
             "surfacearea" => vec![self.b.input(Input::SurfaceArea)],
             "backfacing" => vec![self.b.input(Input::Backfacing)],
-            _ => self.routine_call(name, a, args, call),
+            _ => self.routine_call(name, a, args),
         }
     }
 
     /// Functions that are one routine.
-    fn routine_call(&mut self, name: &str, a: &[&[Reg]], args: &[Argument], call: &Expr) -> Vec<Reg> {
-        let first_base = args.first().and_then(|arg| arg.ty().base());
-        let routine = match name {
-            "blackbody" => Routine::Blackbody,
-            "wavelength_color" => Routine::WavelengthColor,
-            "transformc" => Routine::TransformColor,
-            "transformu" if a.len() == 2 => {
+    fn routine_call(&mut self, name: &str, a: &[&[Reg]], args: &[Argument]) -> Vec<Reg> {
+        let routine = match (name, args.first().and_then(|arg| arg.ty().base())) {
+            ("blackbody", _) => Routine::Smooth(Smooth::Blackbody),
+            ("wavelength_color", _) => Routine::Smooth(Smooth::WavelengthColor),
+            ("transformc", _) => Routine::Smooth(Smooth::TransformColor),
+            ("transformu", _) if a.len() == 2 => {
                 let common = self.symbol("common");
-                return self.routine(Routine::TransformUnit, &[&[common], a[0], a[1]], &[Kind::Float]);
+                return self.routine(Routine::Smooth(Smooth::TransformUnit), &[&[common], a[0], a[1]]);
             }
-            "transformu" => Routine::TransformUnit,
-            "hash" if first_base == Some(Base::Int) => Routine::HashInt,
-            "hash" if first_base == Some(Base::String) => Routine::HashString,
-            "hash" => Routine::HashFloats,
-            "strlen" => Routine::Strlen,
-            "getchar" => Routine::GetChar,
-            "startswith" => Routine::StartsWith,
-            "endswith" => Routine::EndsWith,
-            "substr" => Routine::Substr,
-            "concat" => Routine::Concat,
-            "stof" => Routine::Stof,
-            "stoi" => Routine::Stoi,
-            // What is left is `raytype`: the checker lets no unknown name pass.
-            _ => Routine::RayType,
+            ("transformu", _) => Routine::Smooth(Smooth::TransformUnit),
+            ("hash", Some(Base::Int)) => Routine::HashInt,
+            ("hash", Some(Base::String)) => Routine::HashString,
+            ("hash", _) => Routine::HashFloats(a.iter().map(|regs| regs.len() as u32).sum()),
+            ("strlen", _) => Routine::Strlen,
+            ("getchar", _) => Routine::GetChar,
+            ("startswith", _) => Routine::StartsWith,
+            ("endswith", _) => Routine::EndsWith,
+            ("substr", _) => Routine::Substr,
+            ("concat", _) => Routine::Concat,
+            ("stof", _) => Routine::Stof,
+            ("stoi", _) => Routine::Stoi,
+            ("raytype", _) => Routine::RayType,
+            // The checker lets no other name pass, and a test compiles every builtin that there is.
+            (other, _) => unreachable!("the builtin `{other}` has no routine"),
         };
-        let base = call.ty.base().unwrap_or(Base::Int);
-        self.routine(routine, a, &vec![kind_of(base); base.components()])
+        self.routine(routine, a)
     }
 
-    fn routine(&mut self, routine: Routine, a: &[&[Reg]], kinds: &[Kind]) -> Vec<Reg> {
-        self.b.call(routine, kinds, a.concat(), self.span)
+    fn routine(&mut self, routine: Routine, a: &[&[Reg]]) -> Vec<Reg> {
+        self.b.call(routine, a.concat(), self.span)
     }
 
     pub(super) fn symbol(&mut self, text: &str) -> Reg {
@@ -240,11 +239,9 @@ impl Lower<'_> {
         for c in 0..components {
             let src: Vec<Reg> =
                 [numbers[0], numbers[1], count].into_iter().chain(knots.iter().map(|knot| knot[c])).collect();
-            let (routine, kinds): (_, &[Kind]) = match name {
-                "spline" => (Routine::Spline, &[Kind::Float, Kind::Float]),
-                _ => (Routine::SplineInverse, &[Kind::Float]),
-            };
-            out.push(self.b.call(routine, kinds, src, self.span)[0]);
+            let count = knots.len() as u32;
+            let function = if name == "spline" { Smooth::Spline(count) } else { Smooth::SplineInverse(count) };
+            out.push(self.b.call(Routine::Smooth(function), src, self.span)[0]);
         }
         Value::Regs(out)
     }

@@ -4,7 +4,7 @@ use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::{Argument, Expr};
 use crate::ir::op::{Binary, IntBinary, Noise, NoiseKind, PrintTo, Routine, TextArg, TextFormat, Unary};
-use crate::ir::program::{Kind, Node, Reg};
+use crate::ir::program::{Node, Reg};
 use crate::lang::symbols::Symbol;
 use crate::lang::types::Base;
 
@@ -43,7 +43,7 @@ impl Lower<'_> {
             src = (0..dims).map(|i| self.wrapped(src[i], src[dims + i])).collect();
             noise.periodic = false;
         }
-        self.b.call(Routine::Noise(noise), &vec![Kind::Float; noise.outputs as usize], src, self.span)
+        self.b.call(Routine::Noise(noise), src, self.span)
     }
 
     /// A coordinate brought into `0..period`; periods are whole numbers from 1 on.
@@ -77,7 +77,7 @@ impl Lower<'_> {
         let Some((&kind, others)) = kinds.split_first() else {
             let text = "there is no noise \"%s\"".to_owned();
             let format = TextFormat { text, args: vec![TextArg::Strings(1)] };
-            self.b.call(Routine::Print(PrintTo::Error, format), &[], vec![name], self.span);
+            self.b.call(Routine::Print(PrintTo::Error, format), vec![name], self.span);
             return;
         };
         if noise.periodic && !kind.repeats() {

@@ -3,7 +3,7 @@
 use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::Expr;
-use crate::ir::op::{Binary, Compare, IntBinary, IntUnary, Routine, Unary};
+use crate::ir::op::{Binary, Compare, IntBinary, IntUnary, Routine, Smooth, Unary};
 use crate::ir::program::*;
 use crate::lang::types::{Base, Type};
 use velour_grammar::ast::{BinaryOp, UnaryOp};
@@ -170,7 +170,7 @@ impl Lower<'_> {
     }
 
     pub(super) fn inverse(&mut self, matrix: &[Reg]) -> Vec<Reg> {
-        self.b.call(Routine::MatrixInverse, &[Kind::Float; 16], matrix.to_vec(), self.span)
+        self.b.call(Routine::Smooth(Smooth::MatrixInverse), matrix.to_vec(), self.span)
     }
 
     /// `a && b`, `a || b`; the right side runs only where it decides, when running it elsewhere would be seen.

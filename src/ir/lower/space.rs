@@ -2,8 +2,8 @@
 
 use super::state::Lower;
 use crate::check::typed::{Argument, Expr};
-use crate::ir::op::{Binary, Routine};
-use crate::ir::program::{Kind, Reg};
+use crate::ir::op::{Binary, Routine, Smooth};
+use crate::ir::program::Reg;
 use crate::lang::types::Base;
 
 impl Lower<'_> {
@@ -14,9 +14,7 @@ impl Lower<'_> {
             let (zero, one) = (self.b.float(0.0), self.b.float(1.0));
             return ((0..16).map(|i| if i % 5 == 0 { one } else { zero }).collect(), self.b.int(1));
         }
-        let mut kinds = vec![Kind::Float; 16];
-        kinds.push(Kind::Int);
-        let mut results = self.b.call(Routine::SpaceMatrix, &kinds, vec![from, to], self.span);
+        let mut results = self.b.call(Routine::SpaceMatrix, vec![from, to], self.span);
         let found = results.pop().unwrap_or(from);
         (results, found)
     }
@@ -61,7 +59,7 @@ impl Lower<'_> {
         match base {
             Base::Color => {
                 let src = [space, to].into_iter().chain(regs).collect();
-                self.b.call(Routine::TransformColor, &[Kind::Float; 3], src, self.span)
+                self.b.call(Routine::Smooth(Smooth::TransformColor), src, self.span)
             }
             Base::Matrix => {
                 if regs.len() == 1 {

@@ -35,14 +35,14 @@ impl Lower<'_> {
         let span = self.span;
         let to = match name {
             "format" => {
-                return Value::Regs(self.b.call(Routine::Format(format), &[Kind::String], src, span));
+                return Value::Regs(self.b.call(Routine::Format(format), src, span));
             }
             "printf" => PrintTo::Output,
             "fprintf" => PrintTo::File,
             "warning" => PrintTo::Warning,
             _ => PrintTo::Error,
         };
-        self.b.call(Routine::Print(to, format), &[], src, span);
+        self.b.call(Routine::Print(to, format), src, span);
         Value::Regs(Vec::new())
     }
 

@@ -5,7 +5,7 @@ use super::place::Target;
 use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::{Argument, Expr};
-use crate::ir::op::{AttributeType, Routine, Unary};
+use crate::ir::op::{AttributeQuery, AttributeType, Routine, Unary};
 use crate::ir::program::{Kind, Reg};
 use crate::lang::types::Type;
 
@@ -65,8 +65,7 @@ impl Lower<'_> {
             Kind::String => AttributeType::Strings(count),
             Kind::Int | Kind::Closure => AttributeType::Ints(count),
         };
-        let kinds: Vec<Kind> = [Kind::Int].into_iter().chain(old.iter().map(|_| kind)).collect();
-        let results = self.b.call(Routine::Attribute(ty), &kinds, inputs, self.span);
+        let results = self.b.call(Routine::Attribute(AttributeQuery { ty, slopes: false }), inputs, self.span);
         let new: Vec<Reg> =
             results[1..].iter().zip(&old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
         self.write_flat(out, &new);
@@ -87,8 +86,8 @@ impl Lower<'_> {
     }
 
     fn regex(&mut self, whole: bool, positions: Option<&Target>, inputs: Vec<Reg>) -> Reg {
-        let count = positions.map_or(0, |target| self.load(target).count());
-        let results = self.b.call(Routine::Regex(whole), &vec![Kind::Int; 1 + count], inputs, self.span);
+        let positions_count = positions.map_or(0, |target| self.load(target).count()) as u32;
+        let results = self.b.call(Routine::Regex { whole, positions: positions_count }, inputs, self.span);
         if let Some(target) = positions {
             self.write_flat(target, &results[1..]);
         }
@@ -105,8 +104,7 @@ impl Lower<'_> {
             let most = self.b.int(count as i32);
             inputs.push(most);
         }
-        let kinds: Vec<Kind> = [Kind::Int].into_iter().chain(vec![Kind::String; count]).collect();
-        let results = self.b.call(Routine::Split, &kinds, inputs, self.span);
+        let results = self.b.call(Routine::Split(count as u32), inputs, self.span);
         self.write_flat(out, &results[1..]);
         results[0]
     }

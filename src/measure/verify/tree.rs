@@ -2,7 +2,7 @@
 
 use super::subject::Scatterer;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
-use crate::exec::{Group, Machine, Points, Report};
+use crate::exec::{Group, Machine, Points, ReportKind};
 use crate::math::columns::Column3;
 use glam::Vec3;
 
@@ -74,8 +74,12 @@ impl Scatterer for TreeScatterer {
             self.complaint = Some(format!("{place}`{}` has a parameter or weight that is no number", dropped.closure));
         }
         for report in self.machine.take_reports() {
-            if let (Report::Error(text) | Report::Fatal(text), None) = (report, &self.complaint) {
-                self.complaint = Some(text);
+            let wrong = match report.kind {
+                ReportKind::Error | ReportKind::Mistake | ReportKind::Fatal => true,
+                ReportKind::Output | ReportKind::File(_) | ReportKind::Warning => false,
+            };
+            if wrong && self.complaint.is_none() {
+                self.complaint = Some(report.to_string());
             }
         }
     }

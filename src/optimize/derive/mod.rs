@@ -4,6 +4,7 @@
 //! whatever they are computed from. A second walk writes, after each instruction that computes such a register, the
 //! instructions for its two derivatives. What has no derivative (ints, strings, constants, steps) counts as zero.
 
+mod calls;
 mod rules;
 
 use crate::ir::op::*;
@@ -83,7 +84,11 @@ impl Needs {
             return;
         }
         match instr {
-            Instr::Unary(op, _, a) if !is_step(*op) => self.mark(*a),
+            Instr::Unary(op, _, a) => {
+                if !is_step(*op) {
+                    self.mark(*a);
+                }
+            }
             Instr::Binary(Binary::Step, ..) => {}
             Instr::Binary(_, _, a, b) | Instr::Select(_, _, a, b) => {
                 self.mark(*a);
@@ -95,20 +100,32 @@ impl Needs {
                 self.changed |= !*slot;
                 *slot = true;
             }
-            Instr::Call { routine: Routine::Noise(noise), src, .. } if has_slope(noise.kind) => {
+            Instr::Call { routine, src, .. } => self.call(routine, src),
+            // There are no pairs yet, and the others write no floats or floats that are steps.
+            Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) | Instr::Compare(..) => {}
+            Instr::Test(..) | Instr::IntUnary(..) | Instr::IntBinary(..) => {}
+            // A second derivative is zero, as OSL has it. Arrays are dealt with above.
+            Instr::Derivative(..) | Instr::ArraySet { .. } => {}
+            Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => {}
+            Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => {}
+        }
+    }
+
+    fn call(&mut self, routine: &Routine, src: &[Reg]) {
+        let Declaration { takes, slopes, .. } = routine.declaration();
+        match (slopes, routine) {
+            (Slopes::Rule(_), _) => floats(&takes, src).for_each(|reg| self.mark(reg)),
+            (Slopes::Gradient, Routine::Noise(noise)) => {
                 src[..noise.dims as usize].iter().for_each(|&reg| self.mark(reg));
             }
-            Instr::Call { routine: Routine::Spline | Routine::SplineInverse, src, .. } => self.mark(src[1]),
-            Instr::Call { routine: Routine::TransformColor, src, .. } => {
-                src[2..].iter().for_each(|&reg| self.mark(reg))
-            }
-            _ => {}
+            (Slopes::Gradient | Slopes::Given | Slopes::None, _) => {}
         }
     }
 }
 
-fn has_slope(kind: NoiseKind) -> bool {
-    !matches!(kind, NoiseKind::Cell | NoiseKind::Hash)
+/// The float registers of a list.
+fn floats<'r>(kinds: &'r Kinds, regs: &'r [Reg]) -> impl Iterator<Item = Reg> + 'r {
+    each(kinds).zip(regs).filter(|(kind, _)| *kind == Kind::Float).map(|(_, &reg)| reg)
 }
 
 fn is_step(op: Unary) -> bool {
@@ -178,16 +195,26 @@ impl Writer<'_> {
         }
         let info = self.program.regs[reg.0 as usize];
         let slope = match info.source {
-            Source::Input(Input::Global(global @ (Global::P | Global::Ps | Global::I | Global::U | Global::V), c)) => {
-                [Some(self.input(Input::GlobalDx(global, c))), Some(self.input(Input::GlobalDy(global, c)))]
-            }
+            Source::Input(input) => self.input_slope(input),
             Source::Code if info.mutable && info.kind == Kind::Float => {
                 [Some(self.program.reg(Kind::Float, true)), Some(self.program.reg(Kind::Float, true))]
             }
-            _ => [None, None],
+            Source::Code | Source::Const(_) => [None, None],
         };
         self.slopes.insert(reg, slope);
         slope
+    }
+
+    /// The derivatives of an input: points have them for what moves along the surface.
+    fn input_slope(&mut self, input: Input) -> Slope {
+        let Input::Global(global, c) = input else { return [None, None] };
+        match global {
+            Global::P | Global::Ps | Global::I | Global::U | Global::V => {
+                [Some(self.input(Input::GlobalDx(global, c))), Some(self.input(Input::GlobalDy(global, c)))]
+            }
+            Global::N | Global::Ng | Global::DPdu | Global::DPdv => [None, None],
+            Global::Time | Global::Dtime | Global::DPdtime | Global::Ci => [None, None],
+        }
     }
 
     fn un(&mut self, op: Unary, a: Reg) -> Reg {
@@ -255,42 +282,28 @@ impl Writer<'_> {
                 self.slopes.insert(dst, slope);
             }
             Instr::Move { dst, src, .. } => self.move_slope(instr, dst, src),
-            Instr::ArrayGet { .. } | Instr::ArraySet { .. } => self.array_slope(instr),
-            Instr::Call { routine: Routine::Noise(noise), dst, src, span } if has_slope(noise.kind) => {
-                self.noise_slope(noise, dst, src, span);
-            }
-            Instr::Call { routine: Routine::Spline | Routine::SplineInverse, ref dst, ref src, .. } => {
-                let (value, slope_of_x, x) = (dst[0], dst[1], src[1]);
+            Instr::ArrayGet { dst, array, component, index, span } => {
                 self.emit(instr);
-                let slope = self.slope(x).map(|slope| self.mul(slope, slope_of_x));
-                self.slopes.insert(value, slope);
+                let slope = self.twins(array).map(|array| {
+                    let dst = self.program.reg(Kind::Float, false);
+                    self.emit(Instr::ArrayGet { dst, array, component, index, span });
+                    Some(dst)
+                });
+                self.slopes.insert(dst, slope);
             }
-            Instr::Call { routine: Routine::TransformColor, ref dst, ref src, span } => {
-                let (values, src) = (dst.clone(), src.clone());
+            Instr::ArraySet { array, component, index, src, masked, span } => {
                 self.emit(instr);
-                self.color_slope(&values, &src, span);
+                for (array, slope) in self.twins(array).into_iter().zip(self.slope(src)) {
+                    let src = slope.unwrap_or_else(|| self.zero());
+                    self.emit(Instr::ArraySet { array, component, index, src, masked, span });
+                }
             }
-            other => self.emit(other),
-        }
-    }
-
-    fn color_slope(&mut self, values: &[Reg], src: &[Reg], span: velour_grammar::Span) {
-        let from: Vec<Slope> = src[2..].iter().map(|&reg| self.slope(reg)).collect();
-        let mut slopes = [[None; 2]; 3];
-        for axis in 0..2 {
-            if from.iter().all(|slope| slope[axis].is_none()) {
-                continue;
-            }
-            let moved: Vec<Reg> = from.iter().map(|slope| slope[axis].unwrap_or_else(|| self.zero())).collect();
-            let dst: Vec<Reg> = (0..3).map(|_| self.program.reg(Kind::Float, false)).collect();
-            for (slope, &reg) in slopes.iter_mut().zip(&dst) {
-                slope[axis] = Some(reg);
-            }
-            let src = src.iter().copied().chain(moved).collect();
-            self.emit(Instr::Call { routine: Routine::TransformColorSlope, dst, src, span });
-        }
-        for (&value, slope) in values.iter().zip(slopes) {
-            self.slopes.insert(value, slope);
+            Instr::Call { routine, dst, src, span } => self.call_slope(routine, dst, src, span),
+            // What has no slope is never asked for one; see `Needs::instr`.
+            Instr::Derivative(..) | Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => self.emit(instr),
+            Instr::Compare(..) | Instr::Test(..) | Instr::IntUnary(..) | Instr::IntBinary(..) => self.emit(instr),
+            Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => self.emit(instr),
+            Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => self.emit(instr),
         }
     }
 
@@ -346,55 +359,15 @@ impl Writer<'_> {
         out
     }
 
-    fn array_slope(&mut self, instr: Instr) {
-        let (Instr::ArrayGet { array, .. } | Instr::ArraySet { array, .. }) = instr else { return };
+    /// The arrays that hold the derivatives of an array's elements.
+    fn twins(&mut self, array: ArrayId) -> [ArrayId; 2] {
         let info = self.program.arrays[array.0 as usize];
         let program = &mut *self.program;
-        let twins = *self.arrays.entry(array).or_insert_with(|| {
+        *self.arrays.entry(array).or_insert_with(|| {
             [0, 1].map(|_| {
                 program.arrays.push(info);
                 ArrayId(program.arrays.len() as u32 - 1)
             })
-        });
-        self.emit(instr.clone());
-        match instr {
-            Instr::ArrayGet { dst, component, index, span, .. } => {
-                let slope = twins.map(|array| {
-                    let dst = self.program.reg(Kind::Float, false);
-                    self.emit(Instr::ArrayGet { dst, array, component, index, span });
-                    Some(dst)
-                });
-                self.slopes.insert(dst, slope);
-            }
-            Instr::ArraySet { component, index, src, masked, span, .. } => {
-                let from = self.slope(src);
-                for (array, slope) in twins.into_iter().zip(from) {
-                    let src = slope.unwrap_or_else(|| self.zero());
-                    self.emit(Instr::ArraySet { array, component, index, src, masked, span });
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// Asks the noise for its gradient as well and applies the chain rule.
-    fn noise_slope(&mut self, mut noise: Noise, mut dst: Vec<Reg>, src: Vec<Reg>, span: velour_grammar::Span) {
-        let (dims, outputs) = (noise.dims as usize, noise.outputs as usize);
-        noise.gradient = true;
-        let values = dst.clone();
-        dst.extend((0..dims * outputs).map(|_| self.program.reg(Kind::Float, false)));
-        let gradient = dst[outputs..].to_vec();
-        let inputs: Vec<Slope> = src[..dims].iter().map(|&reg| self.slope(reg)).collect();
-        self.emit(Instr::Call { routine: Routine::Noise(noise), dst, src, span });
-        for (o, value) in values.into_iter().enumerate() {
-            let mut slope = [None; 2];
-            for (axis, slot) in slope.iter_mut().enumerate() {
-                for d in 0..dims {
-                    let part = self.mul(inputs[d][axis], gradient[o * dims + d]);
-                    *slot = self.add(*slot, part);
-                }
-            }
-            self.slopes.insert(value, slope);
-        }
+        })
     }
 }

@@ -49,7 +49,8 @@ impl Writer<'_> {
                 self.bin(Binary::Sub, one, square)
             }
             Unary::Erf | Unary::Erfc => self.error_function_factor(op, a),
-            _ => self.arc_factor(op, a),
+            Unary::Asin | Unary::Acos | Unary::Atan => self.arc_factor(op, a),
+            Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc | Unary::Sign | Unary::Logb => self.zero(),
         }
     }
 
@@ -82,7 +83,7 @@ impl Writer<'_> {
 
     pub(super) fn binary_slope(&mut self, op: Binary, y: Reg, a: Reg, b: Reg) -> Slope {
         let (da, db) = (self.slope(a), self.slope(b));
-        if op == Binary::Step || (da == [None, None] && db == [None, None]) {
+        if da == [None, None] && db == [None, None] {
             return [None, None];
         }
         match op {
@@ -100,7 +101,8 @@ impl Writer<'_> {
             // The derivative of the remainder is taken as that of the dividend, as OSL does.
             Binary::Mod => da,
             Binary::Pow => self.pow_slope(y, a, b, da, db),
-            _ => {
+            Binary::Step => [None, None],
+            Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Atan2 => {
                 let mut out = [None; 2];
                 for (i, slot) in out.iter_mut().enumerate() {
                     *slot = self.linear_slope(op, y, a, b, da[i], db[i]);
@@ -129,7 +131,7 @@ impl Writer<'_> {
                 let sum = self.add(da, minus);
                 sum.map(|sum| self.bin(Binary::Div, sum, b))
             }
-            _ => {
+            Binary::Atan2 => {
                 // atan2(a, b): (b da - a db) / (a² + b²)
                 let (left, right) = (self.mul(da, b), self.mul(db, a));
                 let minus = negative(self, right);
@@ -138,6 +140,7 @@ impl Writer<'_> {
                 let square = self.bin(Binary::Add, aa, bb);
                 sum.map(|sum| self.bin(Binary::Div, sum, square))
             }
+            Binary::Mod | Binary::Pow | Binary::Min | Binary::Max | Binary::Step => None,
         }
     }
 

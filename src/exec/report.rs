@@ -1,0 +1,96 @@
+//! What shaders say and what goes wrong while they run, in parts, so that a host can show, count or sort it.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// Something a shader said, or that went wrong while it ran. `Display` writes it as the command line shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// What it is.
+    pub kind: ReportKind,
+    /// Where in which shader it was said; nothing is known of what concerns no shader.
+    pub place: Arc<ReportPlace>,
+    /// The lane of the batch that said it.
+    pub lane: usize,
+    /// What was said, without its place.
+    pub text: String,
+}
+
+/// What a report is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReportKind {
+    /// `printf`
+    Output,
+    /// `fprintf`, with the file's name.
+    File(String),
+    /// `warning`
+    Warning,
+    /// `error`
+    Error,
+    /// A mistake that shading survives, such as an index outside its array.
+    Mistake,
+    /// The shader cannot be run: the host should stop.
+    Fatal,
+}
+
+/// A place in a shader's text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReportPlace {
+    /// The shader's name.
+    pub shader: String,
+    /// The name of its layer in the group.
+    pub layer: String,
+    /// The file, or the name that its text was given.
+    pub file: String,
+    /// The line, from 1 on; 0 where it is not known.
+    pub line: u32,
+    /// The column, from 1 on.
+    pub column: u32,
+}
+
+impl Report {
+    /// A mistake that no single lane has made, at a place.
+    pub fn mistake(place: ReportPlace, text: String) -> Self {
+        Report { kind: ReportKind::Mistake, place: Arc::new(place), lane: 0, text }
+    }
+
+    /// True when the shader cannot be run.
+    pub fn is_fatal(&self) -> bool {
+        self.kind == ReportKind::Fatal
+    }
+
+    /// What it says and how, whichever lane says it: equal for what a user would read twice. Reports sorted by it come in the
+    /// order of their kinds.
+    pub fn key(&self) -> String {
+        let kind = match &self.kind {
+            ReportKind::Error | ReportKind::Mistake => "Error",
+            ReportKind::Fatal => "Fatal",
+            ReportKind::File(_) => "File",
+            ReportKind::Output => "Output",
+            ReportKind::Warning => "Warning",
+        };
+        format!("{kind} {self}")
+    }
+}
+
+impl fmt::Display for ReportPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => f.write_str(&self.file),
+            line => write!(f, "{}:{line}:{}", self.file, self.column),
+        }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Report { kind, place, text, .. } = self;
+        let colon = if place.file.is_empty() { "" } else { ": " };
+        match kind {
+            ReportKind::Output => f.write_str(text),
+            ReportKind::File(name) => write!(f, "{name}: {text}"),
+            ReportKind::Warning | ReportKind::Error => write!(f, "{place}{colon}{text}"),
+            ReportKind::Mistake | ReportKind::Fatal => write!(f, "{place}{colon}error: {text}"),
+        }
+    }
+}

@@ -1,0 +1,394 @@
+//! Routines: work that is more than one arithmetic step. Each is declared once, in [`Routine::declaration`].
+//!
+//! Lowering takes the kinds of results from there, the passes of `optimize` how derivatives pass, what has an effect and
+//! what differs from lane to lane, [`super::verify`] the arity and the kinds, and the machine which arguments are which.
+
+use super::kind::Kind;
+use smallvec::{SmallVec, smallvec};
+
+pub use super::noise::{Noise, NoiseKind};
+
+/// A routine. Sources and results are lists of registers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Routine {
+    /// Noise.
+    Noise(Noise),
+    /// A function with derivatives.
+    Smooth(Smooth),
+    /// How the results of a function change: its arguments, its float results and the changes of its float arguments, in
+    /// this order, to the changes of its float results.
+    Slope(Smooth),
+    /// The matrix from one named space to another: two symbols to 16 floats and an int that is 1 when both are known.
+    SpaceMatrix,
+    /// The number of a component, kept inside `0..n`; one that is outside is reported.
+    ClampIndex(u32),
+    /// `hash` of an int.
+    HashInt,
+    /// `hash` of 1 to 4 floats.
+    HashFloats(u32),
+    /// `hash` of a string.
+    HashString,
+    /// `strlen`
+    Strlen,
+    /// `getchar`
+    GetChar,
+    /// `startswith`
+    StartsWith,
+    /// `endswith`
+    EndsWith,
+    /// `substr`
+    Substr,
+    /// `concat`
+    Concat,
+    /// `stof`
+    Stof,
+    /// `stoi`
+    Stoi,
+    /// `regex_search`, `regex_match`: text and pattern to 0 or 1 and the positions asked for.
+    Regex {
+        /// True when the whole text has to match.
+        whole: bool,
+        /// How many positions are asked for.
+        positions: u32,
+    },
+    /// `split`: text, separators, most; gives the count, then so many parts.
+    Split(u32),
+    /// `format` to a symbol.
+    Format(TextFormat),
+    /// Writes text.
+    Print(PrintTo, TextFormat),
+    /// Does the ray have this type? Symbol to int.
+    RayType,
+    /// A named attribute: symbols of object and name to an int that is 1 when there is one, and the values.
+    Attribute(AttributeQuery),
+}
+
+/// The functions that have derivatives by a rule of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Smooth {
+    /// `spline`: basis symbol, x, how many knots count, then so many knots of one component.
+    Spline(u32),
+    /// `splineinverse`: basis symbol, value, how many knots count, then so many knots.
+    SplineInverse(u32),
+    /// Inverse of a matrix: 16 to 16.
+    MatrixInverse,
+    /// Determinant of a matrix.
+    Determinant,
+    /// `blackbody`
+    Blackbody,
+    /// `wavelength_color`
+    WavelengthColor,
+    /// `transformc`: from, to, color.
+    TransformColor,
+    /// `transformu`: from, to, length.
+    TransformUnit,
+}
+
+/// An attribute as it is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AttributeQuery {
+    /// Its type.
+    pub ty: AttributeType,
+    /// True when the derivatives along x of all values follow them, then those along y; floats only.
+    pub slopes: bool,
+}
+
+/// The type an attribute is asked as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttributeType {
+    /// So many ints.
+    Ints(u32),
+    /// So many floats.
+    Floats(u32),
+    /// So many strings.
+    Strings(u32),
+}
+
+/// Where text goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PrintTo {
+    /// `printf`
+    Output,
+    /// `fprintf`: the first source is the file's symbol.
+    File,
+    /// `warning`
+    Warning,
+    /// `error`
+    Error,
+}
+
+/// A format string and how the sources that follow group into its arguments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextFormat {
+    /// The format.
+    pub text: String,
+    /// What each argument is made of.
+    pub args: Vec<TextArg>,
+}
+
+/// One argument of a format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextArg {
+    /// So many ints.
+    Ints(u32),
+    /// So many floats.
+    Floats(u32),
+    /// So many strings.
+    Strings(u32),
+    /// A closure.
+    Closure,
+}
+
+/// Kinds of registers in order, each with how many there are in a row.
+pub type Kinds = SmallVec<[(Kind, u32); 4]>;
+
+/// What a routine takes, gives and does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Declaration {
+    /// The kinds of its sources.
+    pub takes: Kinds,
+    /// The kinds of its results.
+    pub gives: Kinds,
+    /// How its results change when its sources do.
+    pub slopes: Slopes,
+    /// What it does besides giving results.
+    pub effect: Effect,
+    /// What its results depend on besides its sources.
+    pub reach: Reach,
+}
+
+/// How derivatives pass through a routine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slopes {
+    /// They do not: its results are steps, ints or strings, and their derivatives zero.
+    None,
+    /// [`Routine::Slope`] of this function gives the changes of its results.
+    Rule(Smooth),
+    /// It gives its gradient when asked: value by value, coordinate by coordinate.
+    Gradient,
+    /// It gives the derivatives of its values when asked, as it is no function of its sources alone.
+    Given,
+}
+
+/// What a routine does besides giving results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Nothing: where nobody reads its results it need not run.
+    None,
+    /// It says something that somebody may hear.
+    Prints,
+}
+
+/// What the results of a routine depend on besides its sources.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// On nothing else.
+    Sources,
+    /// On the host, which answers once for a batch.
+    Host,
+    /// On the point of each lane, and maybe on the host.
+    Lane,
+}
+
+/// How many registers a list of kinds stands for.
+pub fn width(kinds: &Kinds) -> usize {
+    kinds.iter().map(|&(_, count)| count as usize).sum()
+}
+
+/// The kinds of a list one by one.
+pub fn each(kinds: &Kinds) -> impl Iterator<Item = Kind> + '_ {
+    kinds.iter().flat_map(|&(kind, count)| std::iter::repeat_n(kind, count as usize))
+}
+
+fn floats_of(kinds: &Kinds) -> u32 {
+    let counts = kinds.iter().filter(|(kind, _)| *kind == Kind::Float).map(|&(_, count)| count);
+    counts.fold(0, u32::saturating_add)
+}
+
+impl Routine {
+    /// What it takes, gives and does: the one place that says it.
+    pub fn declaration(&self) -> Declaration {
+        use Kind::{Float, Int, String};
+        let one = |kind| smallvec![(kind, 1)];
+        let pure = |takes: Kinds, gives: Kinds| Declaration {
+            takes,
+            gives,
+            slopes: Slopes::None,
+            effect: Effect::None,
+            reach: Reach::Sources,
+        };
+        match self {
+            Routine::Noise(noise) => {
+                let slopes = if noise.kind.has_gradient() { Slopes::Gradient } else { Slopes::None };
+                let (reads, writes) = (smallvec![(Float, noise.reads())], smallvec![(Float, noise.writes())]);
+                Declaration { slopes, ..pure(reads, writes) }
+            }
+            Routine::Smooth(function) => {
+                let slopes = Slopes::Rule(*function);
+                Declaration { slopes, ..pure(function.takes(), function.gives()) }
+            }
+            Routine::Slope(function) => {
+                let (mut takes, results) = (function.takes(), floats_of(&function.gives()));
+                let changes = floats_of(&takes);
+                takes.extend([(Float, results), (Float, changes)]);
+                pure(takes, smallvec![(Float, results)])
+            }
+            Routine::SpaceMatrix => {
+                let reach = Reach::Host;
+                Declaration { reach, ..pure(smallvec![(String, 2)], smallvec![(Float, 16), (Int, 1)]) }
+            }
+            Routine::ClampIndex(_) | Routine::HashInt => pure(one(Int), one(Int)),
+            Routine::HashFloats(count) => pure(smallvec![(Float, *count)], one(Int)),
+            Routine::HashString | Routine::Strlen | Routine::Stoi => pure(one(String), one(Int)),
+            Routine::GetChar => pure(smallvec![(String, 1), (Int, 1)], one(Int)),
+            Routine::StartsWith | Routine::EndsWith => pure(smallvec![(String, 2)], one(Int)),
+            Routine::Substr => pure(smallvec![(String, 1), (Int, 2)], one(String)),
+            Routine::Concat => pure(smallvec![(String, 2)], one(String)),
+            Routine::Stof => pure(one(String), one(Float)),
+            Routine::Regex { positions, .. } => pure(smallvec![(String, 2)], smallvec![(Int, positions.saturating_add(1))]),
+            Routine::Split(parts) => {
+                pure(smallvec![(String, 2), (Int, 1)], smallvec![(Int, 1), (String, *parts)])
+            }
+            Routine::Format(format) => pure(format.takes().collect(), one(String)),
+            Routine::Print(to, format) => {
+                let file = (*to == PrintTo::File).then_some((String, 1));
+                let takes = file.into_iter().chain(format.takes()).collect();
+                Declaration { effect: Effect::Prints, ..pure(takes, Kinds::new()) }
+            }
+            Routine::RayType => Declaration { reach: Reach::Lane, ..pure(one(String), one(Int)) },
+            Routine::Attribute(attribute) => {
+                let (kind, count) = attribute.ty.kind();
+                let rows = if attribute.slopes { 3 } else { 1 };
+                let slopes = if kind == Float { Slopes::Given } else { Slopes::None };
+                let gives = smallvec![(Int, 1), (kind, count.saturating_mul(rows))];
+                Declaration { slopes, reach: Reach::Lane, ..pure(smallvec![(String, 2)], gives) }
+            }
+        }
+    }
+
+    /// Is there such a routine? Not every number that a variant can carry makes one.
+    pub fn exists(&self) -> bool {
+        match self {
+            Routine::Noise(noise) => noise.exists(),
+            Routine::HashFloats(count) => (1..=4).contains(count),
+            Routine::ClampIndex(len) => (1..=i32::MAX as u32).contains(len),
+            Routine::Attribute(attribute) => !attribute.slopes || matches!(attribute.ty, AttributeType::Floats(_)),
+            Routine::Smooth(_) | Routine::Slope(_) | Routine::SpaceMatrix | Routine::HashInt => true,
+            Routine::HashString | Routine::Strlen | Routine::GetChar | Routine::StartsWith => true,
+            Routine::EndsWith | Routine::Substr | Routine::Concat | Routine::Stof | Routine::Stoi => true,
+            Routine::Regex { .. } | Routine::Split(_) | Routine::Format(_) | Routine::Print(..) => true,
+            Routine::RayType => true,
+        }
+    }
+
+    /// Its name in listings.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Routine::Noise(_) => "noise",
+            Routine::Smooth(function) => function.name(),
+            Routine::Slope(function) => function.slope_name(),
+            Routine::SpaceMatrix => "space_matrix",
+            Routine::ClampIndex(_) => "clamp_index",
+            Routine::HashInt => "hash_int",
+            Routine::HashFloats(_) => "hash_floats",
+            Routine::HashString => "hash_string",
+            Routine::Strlen => "strlen",
+            Routine::GetChar => "get_char",
+            Routine::StartsWith => "starts_with",
+            Routine::EndsWith => "ends_with",
+            Routine::Substr => "substr",
+            Routine::Concat => "concat",
+            Routine::Stof => "stof",
+            Routine::Stoi => "stoi",
+            Routine::Regex { whole: false, .. } => "regex_search",
+            Routine::Regex { whole: true, .. } => "regex_match",
+            Routine::Split(_) => "split",
+            Routine::Format(_) => "format",
+            Routine::Print(..) => "print",
+            Routine::RayType => "ray_type",
+            Routine::Attribute(_) => "attribute",
+        }
+    }
+}
+
+impl Smooth {
+    /// The kinds of its sources.
+    fn takes(self) -> Kinds {
+        use Kind::{Float, Int, String};
+        match self {
+            Smooth::Spline(knots) | Smooth::SplineInverse(knots) => {
+                smallvec![(String, 1), (Float, 1), (Int, 1), (Float, knots)]
+            }
+            Smooth::MatrixInverse | Smooth::Determinant => smallvec![(Float, 16)],
+            Smooth::Blackbody | Smooth::WavelengthColor => smallvec![(Float, 1)],
+            Smooth::TransformColor => smallvec![(String, 2), (Float, 3)],
+            Smooth::TransformUnit => smallvec![(String, 2), (Float, 1)],
+        }
+    }
+
+    /// The kinds of its results.
+    fn gives(self) -> Kinds {
+        let count = match self {
+            Smooth::Spline(_) | Smooth::SplineInverse(_) | Smooth::Determinant | Smooth::TransformUnit => 1,
+            Smooth::Blackbody | Smooth::WavelengthColor | Smooth::TransformColor => 3,
+            Smooth::MatrixInverse => 16,
+        };
+        smallvec![(Kind::Float, count)]
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Smooth::Spline(_) => "spline",
+            Smooth::SplineInverse(_) => "spline_inverse",
+            Smooth::MatrixInverse => "matrix_inverse",
+            Smooth::Determinant => "determinant",
+            Smooth::Blackbody => "blackbody",
+            Smooth::WavelengthColor => "wavelength_color",
+            Smooth::TransformColor => "transform_color",
+            Smooth::TransformUnit => "transform_unit",
+        }
+    }
+
+    fn slope_name(self) -> &'static str {
+        match self {
+            Smooth::Spline(_) => "spline_slope",
+            Smooth::SplineInverse(_) => "spline_inverse_slope",
+            Smooth::MatrixInverse => "matrix_inverse_slope",
+            Smooth::Determinant => "determinant_slope",
+            Smooth::Blackbody => "blackbody_slope",
+            Smooth::WavelengthColor => "wavelength_color_slope",
+            Smooth::TransformColor => "transform_color_slope",
+            Smooth::TransformUnit => "transform_unit_slope",
+        }
+    }
+}
+
+impl AttributeType {
+    /// The kind of its values and how many there are.
+    pub fn kind(self) -> (Kind, u32) {
+        match self {
+            AttributeType::Ints(count) => (Kind::Int, count),
+            AttributeType::Floats(count) => (Kind::Float, count),
+            AttributeType::Strings(count) => (Kind::String, count),
+        }
+    }
+}
+
+impl TextArg {
+    /// The kind of its registers and how many there are.
+    pub fn kind(self) -> (Kind, u32) {
+        match self {
+            TextArg::Ints(count) => (Kind::Int, count),
+            TextArg::Floats(count) => (Kind::Float, count),
+            TextArg::Strings(count) => (Kind::String, count),
+            TextArg::Closure => (Kind::Closure, 1),
+        }
+    }
+}
+
+impl TextFormat {
+    /// The kinds of the registers that follow the format.
+    fn takes(&self) -> impl Iterator<Item = (Kind, u32)> + '_ {
+        self.args.iter().map(|arg| arg.kind())
+    }
+}
