@@ -181,13 +181,11 @@ fn with_arrays(expression: &str) -> String {
     ];
     let mut text = String::new();
     for (name, declaration) in arrays {
-        if expression.contains(&format!(" {name}"))
+        let used = expression.contains(&format!(" {name}"))
             || expression.contains(&format!("({name}"))
-            || expression.starts_with(name)
-        {
-            if !text.contains(declaration) {
-                text.push_str(declaration);
-            }
+            || expression.starts_with(name);
+        if used && !text.contains(declaration) {
+            text.push_str(declaration);
         }
     }
     text

@@ -25,6 +25,12 @@ pub struct Machine {
     pub budget: u64,
 }
 
+impl std::fmt::Debug for Machine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Machine").field("budget", &self.budget).finish_non_exhaustive()
+    }
+}
+
 impl Default for Machine {
     fn default() -> Self {
         Self::new()

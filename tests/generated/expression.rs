@@ -236,7 +236,7 @@ impl Maker {
             14 => match self.place(Ty::Int) {
                 Some(place) => self
                     .pick(&["@++", "@--", "(++@)", "(--@)"])
-                    .replace('@', &format!("({place})").trim_start_matches('(').trim_end_matches(')').to_owned()),
+                    .replace('@', format!("({place})").trim_start_matches('(').trim_end_matches(')')),
                 None => l,
             },
             15 => {
