@@ -64,17 +64,25 @@ impl Cone {
         Vec3::new(r * cos, r * sin, 1.0 - below)
     }
 
-    /// The mean intensity over the cone: (1 - t cos(outer) - (sin(outer) - sin(inner)) / fall) / (1 - cos(outer)) with the
-    /// intensity t that is left at the end.
+    /// The mean intensity over the cone.
+    ///
+    /// Source: own integration: t + ((b - sin b) - (a - sin a)) / (fall (1 - cos b)) with the angles a and b where the fall
+    /// begins and where the cone ends, and the intensity t that is left there.
     #[inline(always)]
     fn mean(&self) -> f32 {
-        let ((_, cos_outer), (sin_inner, _), (sin_outer, _)) =
-            (sincos(self.outer), sincos(self.inner), sincos(self.outer));
         let left = 1.0 - (self.outer - self.inner) / self.fall;
-        let sharp = self.fall < 1e-3;
-        let mean = (1.0 - left * cos_outer - (sin_outer - sin_inner) / self.fall) / self.height;
-        limited(select(sharp, 1.0, mean), 0.0, 1.0)
+        let mean = left + (beyond_sine(self.outer) - beyond_sine(self.inner)) / (self.fall * self.height);
+        limited(select(self.fall < 1e-3 * self.outer, 1.0, mean), 0.0, 1.0)
     }
+}
+
+/// x - sin x for x in 0..pi/2, by its series where the difference would lose its digits.
+#[inline(always)]
+fn beyond_sine(x: f32) -> f32 {
+    let (x2, (sin, _)) = (x * x, sincos(x));
+    let series =
+        x * x2 * (1.0 / 6.0) * (1.0 - x2 * (1.0 / 20.0) * (1.0 - x2 * (1.0 / 42.0) * (1.0 - x2 * (1.0 / 72.0))));
+    select(x < 0.5, series, x - sin)
 }
 
 /// A cone about the normal.
