@@ -3,7 +3,7 @@
 //! `cargo run --example closure_tree`
 
 use std::error::Error;
-use velour::closure::print::tree_text;
+use velour::closure::reading::{Leaves, Value};
 use velour::exec::{Machine, Points};
 use velour::glam::Vec3;
 
@@ -16,6 +16,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     let group = velour::compile::compile(SHADER)?.group().param("r", &[0.5]).build()?;
     let mut machine = Machine::new();
     let tree = machine.shade(&group, &Points::single(Vec3::Z));
-    println!("{}", tree_text(group.table(), tree, 0));
+    show(tree.lane(group.table(), 0), "");
     Ok(())
+}
+
+/// Prints leaves, and those nested in them further in.
+fn show(leaves: Leaves, margin: &str) {
+    for leaf in leaves {
+        println!("{margin}{} of weight {:?}", leaf.name(), leaf.weight());
+        for (name, value) in leaf.arguments() {
+            match value {
+                Value::Closure(nested) => {
+                    println!("{margin}  {name}:");
+                    show(nested, &format!("{margin}    "));
+                }
+                value => println!("{margin}  {name} = {value:?}"),
+            }
+        }
+    }
 }

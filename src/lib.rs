@@ -46,25 +46,58 @@
 //!
 //! # Rooms
 //!
-//! A file uses its own room or one above it in this list, never one below; `tests/architecture.rs` holds that.
+//! A file uses its own room or one above it in this list, never one below, and no two files of a room use each other;
+//! `tests/architecture` holds that. A room with a feature is compiled with it; all features are on by default.
 //!
-//! | room | what it is |
-//! |---|---|
-//! | `grammar/` | text to syntax tree: preprocessor, lexer, grammar, diagnostics (a crate of its own) |
-//! | [`lang`] | nouns: types, symbols, tables of builtins, globals and closures |
-//! | [`math`] | columns, elementary functions, noise, frames, warps, quadrature; knows no language |
-//! | [`ops`] | the one meaning of every builtin |
-//! | [`check`] | syntax tree to typed shader; every mistake a user can make ends here |
-//! | [`ir`] | typed shaders to a program; print; verify |
-//! | [`optimize`] | program to program: derivatives, dead code, uniform values, operations in pairs |
-//! | [`bsdf`] | one file a scattering model, in its local frame |
-//! | [`closure`] | what each closure is, one file a family; the tree: print, flatten to lobes, albedo scaling, evaluate, sample |
-//! | [`exec`] | program and points to closure tree |
-//! | [`compile`] | the pipeline in one place |
-//! | [`scene`] | scene XML, meshes, shader groups |
-//! | [`render`] | wavefront path tracer, film, image files |
-//! | [`measure`] | furnace, statistics, quadrature: what tests and charts run on |
-//! | [`cli`] | arguments and subcommands; the only room that prints or exits |
+//! | room | feature | what it is |
+//! |---|---|---|
+//! | `grammar/` | | text to syntax tree: preprocessor, lexer, grammar, diagnostics (a crate of its own) |
+//! | [`lang`] | | nouns: types, symbols, tables of builtins and globals, what a closure declares |
+//! | [`math`] | | columns, elementary functions, noise, frames, warps, quadrature; knows no language |
+//! | [`ops`] | | the one meaning of every builtin |
+//! | [`check`] | | syntax tree to typed shader; every mistake a user can make ends here |
+//! | [`ir`] | | typed shaders to a program; print; verify |
+//! | [`optimize`] | | program to program: derivatives, dead code, uniform values, operations in pairs |
+//! | [`bsdf`] | | one file a scattering model, in its local frame |
+//! | [`closure`] | | each closure in one place; the tree: print, read, flatten to lobes, evaluate, sample |
+//! | [`exec`] | | program and points to closure tree |
+//! | [`compile`] | | the pipeline in one place |
+//! | `scene` | `render` | scene XML, meshes, shader groups |
+//! | `render` | `render` | wavefront path tracer, film, image files |
+//! | `measure` | `measure`, `chart` | furnace, statistics, quadrature: what tests and charts run on |
+//! | `cli` | `cli` | arguments and subcommands; the only room that prints or exits |
+//!
+//! # Two ways through the house
+//!
+//! The `roughness` of `sheen(Ci, N, tint, roughness)`, from text to lobe:
+//!
+//! 1. `grammar/src/lib.rs::parse` makes it the fourth argument of a call
+//! 2. `check/call.rs::call_closure` finds the fourth parameter and converts the expression to its type
+//! 3. `ir/lower/expr.rs::closure` puts its register fourth in the leaf's instruction
+//! 4. `exec/closures.rs::leaf` makes the register's column the fourth parameter of a leaf of the tree
+//! 5. `closure/flatten.rs::make_ready` asks the library for the leaf's lobes
+//! 6. `closure/arguments.rs::param` fills the field `roughness` of the closure's arguments
+//! 7. `closure/families/cloth.rs::lobes` gives it to the lobe as the model's first parameter
+//! 8. `closure/lobe_models.rs::push` keeps it as a number, or as a column of the batch
+//! 9. `closure/lobe_kind.rs::evaluate` hands it to the lane loop of the model
+//! 10. `bsdf/sheen/mod.rs::prepare` clamps it and makes the model's constants
+//!
+//! A camera ray, from the renderer to the film:
+//!
+//! 1. `render/renderer.rs::round` cuts the round into tasks, of which threads take one at a time
+//! 2. `render/trace.rs::render_tile` fills a wave with paths, and names the stages of a bounce in order
+//! 3. `render/stages/camera.rs::start` draws a place in the pixel and makes the ray
+//! 4. `render/stages/intersect.rs::intersect` asks the hierarchy for the hits
+//! 5. `render/stages/background.rs::background` adds the sky to what missed
+//! 6. `render/stages/sort.rs::sort` sorts the hits by material
+//! 7. `render/stages/shade.rs::shade` takes a batch of one material, and adds what it emits
+//! 8. `render/points.rs::fill` makes shading points of its hits
+//! 9. `render/shading.rs::shade` runs the shader and flattens its closures
+//! 10. `render/stages/light.rs::sample_light` queues rays to lights
+//! 11. `render/stages/scatter.rs::scatter` sends the paths on, to 4
+//! 12. `render/stages/shadow.rs::trace_shadows` adds what the queued rays bring
+//! 13. `render/film.rs::add` weighs the sample into the pixels around it
+//! 14. `render/film.rs::picture` divides sums by weights
 //!
 //! # Invariants
 //!

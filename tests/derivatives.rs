@@ -113,10 +113,50 @@ const SMOOTH: &[(&str, &str)] = &[
 
 /// Builtins whose derivative is zero, as they give ints or strings, are steps, or see nothing that moves along the surface.
 const FLAT: &[&str] = &[
-    "Dx", "Dy", "Dz", "area", "arraylength", "backfacing", "calculatenormal", "ceil", "cellnoise", "concat", "endswith", "error", "exit",
-    "filterwidth", "floor", "format", "fprintf", "getattribute", "getchar", "getmatrix", "hash", "hashnoise", "isconnected",
-    "isconstant", "isfinite", "isinf", "isnan", "logb", "printf", "raytype", "regex_match", "regex_search", "round", "sign", "split",
-    "startswith", "step", "stof", "stoi", "strlen", "substr", "surfacearea", "trunc", "warning",
+    "Dx",
+    "Dy",
+    "Dz",
+    "area",
+    "arraylength",
+    "backfacing",
+    "calculatenormal",
+    "ceil",
+    "cellnoise",
+    "concat",
+    "endswith",
+    "error",
+    "exit",
+    "filterwidth",
+    "floor",
+    "format",
+    "fprintf",
+    "getattribute",
+    "getchar",
+    "getmatrix",
+    "hash",
+    "hashnoise",
+    "isconnected",
+    "isconstant",
+    "isfinite",
+    "isinf",
+    "isnan",
+    "logb",
+    "printf",
+    "raytype",
+    "regex_match",
+    "regex_search",
+    "round",
+    "sign",
+    "split",
+    "startswith",
+    "step",
+    "stof",
+    "stoi",
+    "strlen",
+    "substr",
+    "surfacearea",
+    "trunc",
+    "warning",
 ];
 
 /// What the expressions call.
@@ -141,10 +181,11 @@ fn with_arrays(expression: &str) -> String {
     ];
     let mut text = String::new();
     for (name, declaration) in arrays {
-        if expression.contains(&format!(" {name}")) || expression.contains(&format!("({name}")) || expression.starts_with(name) {
-            if !text.contains(declaration) {
-                text.push_str(declaration);
-            }
+        let used = expression.contains(&format!(" {name}"))
+            || expression.contains(&format!("({name}"))
+            || expression.starts_with(name);
+        if used && !text.contains(declaration) {
+            text.push_str(declaration);
         }
     }
     text

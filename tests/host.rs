@@ -36,7 +36,9 @@ impl Host for Counting {
             }),
             ("", "name") => answer.lanes().iter().for_each(|&lane| answer.strings(lane, &[format!("point {lane}")])),
             // Only every other lane has it.
-            ("", "odd") => answer.lanes().iter().filter(|&lane| lane % 2 == 1).for_each(|&lane| answer.ints(lane, &[7])),
+            ("", "odd") => {
+                answer.lanes().iter().filter(|&lane| lane % 2 == 1).for_each(|&lane| answer.ints(lane, &[7]))
+            }
             ("lamp", "power") => answer.all(&Attribute::Floats(vec![1.0, 2.0, 3.0])),
             _ => {}
         }

@@ -28,7 +28,8 @@ fn alone(name: &str) -> bool {
         return true;
     }
     let this = std::env::current_exe().unwrap();
-    let ran = std::process::Command::new(this).args(["--exact", name, "--test-threads=1"]).env(ALONE, "1").output().unwrap();
+    let ran =
+        std::process::Command::new(this).args(["--exact", name, "--test-threads=1"]).env(ALONE, "1").output().unwrap();
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stdout));
     false
 }
@@ -103,7 +104,8 @@ fn strings_made_in_a_batch_equal_those_of_the_program() {
 
 #[test]
 fn strings_that_grow_without_end_are_given_up() {
-    let text = "shader s() { string t = \"x\"; for (int i = 0; i < 60; ++i) t = concat(t, t); printf(\"%d\", strlen(t)); }";
+    let text =
+        "shader s() { string t = \"x\"; for (int i = 0; i < 60; ++i) t = concat(t, t); printf(\"%d\", strlen(t)); }";
     let group = shader(text).group().build().unwrap();
     let mut machine = Machine::new();
     machine.shade(&group, &Points::new(4));

@@ -20,7 +20,7 @@ const TURNS: usize = 41;
 const SLICE: f64 = 3e-4;
 
 /// Best times of two sides in ns a lane, and the median of their ratios.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Pair {
     /// The first side.
     pub here: f64,
@@ -68,6 +68,7 @@ pub fn pair(mut here: Side, mut limit: Side) -> Pair {
 }
 
 /// The table as it grows.
+#[derive(Debug)]
 pub struct Table {
     words: Vec<String>,
 }

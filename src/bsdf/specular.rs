@@ -25,6 +25,7 @@ pub trait Single: 'static {
 /// The mirror direction with the part that a Fresnel term of the parameters reflects.
 ///
 /// Degenerate cases: a dielectric of index 0 or less reflects all.
+#[derive(Debug)]
 pub struct Reflected<F>(PhantomData<F>);
 
 impl<F: Fresnel> Single for Reflected<F> {
@@ -40,6 +41,7 @@ impl<F: Fresnel> Single for Reflected<F> {
 /// Degenerate cases: nothing for metals, an index of 0 or less and total reflection.
 /// Departs from source: radiance is not scaled by the change of solid angle (1 / eta²), as in OSL's renderers, so that
 /// reflection and refraction of a white sky sum to 1.
+#[derive(Debug)]
 pub struct Refracted<F>(PhantomData<F>);
 
 impl<F: Fresnel> Single for Refracted<F> {

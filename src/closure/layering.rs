@@ -205,7 +205,8 @@ impl Layers {
         }
         for (x, weight) in GAUSS_8 {
             for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-                self.add_mean(models, t * t * t, 3.0 * weight * t.powi(5));
+                let square = t * t;
+                self.add_mean(models, square * t, 3.0 * weight * (square * square * t));
             }
         }
         for index in 0..self.list.len() {

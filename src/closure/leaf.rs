@@ -118,6 +118,12 @@ pub struct LeafMaker<'a> {
     leaf: Leaf,
 }
 
+impl std::fmt::Debug for LeafMaker<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("LeafMaker").field("closure", &self.closure).finish_non_exhaustive()
+    }
+}
+
 impl<'a> LeafMaker<'a> {
     /// Begins a leaf of a closure.
     pub(super) fn new(

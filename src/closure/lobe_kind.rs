@@ -59,6 +59,7 @@ pub(super) struct Loops {
     /// What the viewer decides.
     pub view: fn(Numbers, Choice, Triples, &mut [f32]),
     /// f cos and density, added to three columns and one.
+    #[allow(clippy::type_complexity)] // three columns and one, as the line above says
     pub evaluate: fn(Numbers, Choice, LobeColumns, [&mut [f32]; 3], &mut [f32]),
     /// Directions for the lanes that chose the lobe.
     pub sample: fn(Numbers, Choice, SampleColumns, [&mut [f32]; 3]),

@@ -8,17 +8,7 @@
 //! call in a tree ──Arguments──▶ ClosureDef ──LeafMaker──▶ lobes ──flatten──▶ Flat ──evaluate, sample──▶ light
 //! ```
 //!
-//! The way of one argument, the `roughness` of `sheen(base, N, tint, roughness)`, from the text to the lobe:
-//!
-//! 1. `check/call.rs::call_closure` finds the spec's fourth parameter and converts the expression to its type,
-//! 2. `ir/lower/expr.rs::closure` puts its register fourth in the leaf's instruction,
-//! 3. `exec/closures.rs::leaf` makes the register's column the fourth parameter of a leaf of the tree,
-//! 4. `closure/flatten.rs::make_ready` asks the library for the leaf's lobes,
-//! 5. `closure/arguments.rs::param` fills the field `roughness` of the closure's arguments,
-//! 6. `closure/families/cloth.rs::lobes` gives it to the lobe as the model's first parameter,
-//! 7. `closure/lobe_models.rs::push` keeps it as a number, or as a column of the batch,
-//! 8. `closure/lobe_kind.rs::evaluate` hands it to the lane loop of the model,
-//! 9. `bsdf/sheen/mod.rs::prepare` clamps it and makes the model's constants.
+//! The way of one argument, from the text to the lobe, is in the documentation of the crate.
 
 pub mod arguments;
 mod batch;

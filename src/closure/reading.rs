@@ -99,7 +99,8 @@ impl<'t> Leaf<'t> {
     /// Its arguments with their names: the positional ones, then the keywords that were given.
     pub fn arguments(&self) -> impl Iterator<Item = (&'t str, Value<'t>)> + use<'t> {
         let Leaf { table, tree, spec, lane, node, .. } = *self;
-        let Node::Leaf { first_param, param_count, first_keyword, keyword_count, .. } = tree.nodes[node.0 as usize] else {
+        let Node::Leaf { first_param, param_count, first_keyword, keyword_count, .. } = tree.nodes[node.0 as usize]
+        else {
             unreachable!("a leaf is made of a leaf's node")
         };
         let params = &tree.params[first_param as usize..][..param_count as usize];
@@ -124,7 +125,11 @@ fn argument<'t>(table: &'t ClosureTable, tree: &'t Tree, param: Param, lane: usi
 impl std::fmt::Debug for Leaf<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let arguments: Vec<_> = self.arguments().collect();
-        f.debug_struct("Leaf").field("name", &self.name()).field("weight", &self.weight).field("arguments", &arguments).finish()
+        f.debug_struct("Leaf")
+            .field("name", &self.name())
+            .field("weight", &self.weight)
+            .field("arguments", &arguments)
+            .finish()
     }
 }
 

@@ -10,6 +10,7 @@ use std::str::FromStr;
 ///
 /// Light that leaves below the surface counts with |cos| of the top's normal: it crossed the same layer on its way out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Layering {
     /// min(alpha_i, alpha_o): the largest scale that is safe over every energy-preserving base, and reciprocal. The
     /// default; loses up to 13 % over white Lambert.

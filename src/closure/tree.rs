@@ -173,11 +173,8 @@ impl Tree {
             match node.map(|id| self.nodes[id.0 as usize]) {
                 None => {}
                 Some(Node::Leaf { .. }) => return true,
-                Some(Node::Add(a, b)) => {
-                    if seen.insert(node) {
-                        open.extend([Some(a), Some(b)]);
-                    }
-                }
+                Some(Node::Add(a, b)) if seen.insert(node) => open.extend([Some(a), Some(b)]),
+                Some(Node::Add(..)) => {}
                 Some(Node::Scale { weight, child }) => {
                     let zero = weight.iter().all(|w| self.float(*w, lane) == 0.0);
                     open.push(Some(child).filter(|_| !zero));

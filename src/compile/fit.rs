@@ -166,11 +166,7 @@ mod tests {
         let group = set(builder).build().map_err(|error| error.problem.to_string())?;
         let mut machine = Machine::new();
         machine.shade(&group, &Points::new(1));
-        Ok(machine
-            .take_reports()
-            .into_iter()
-            .map(|report| report.text)
-            .collect())
+        Ok(machine.take_reports().into_iter().map(|report| report.text).collect())
     }
 
     #[test]

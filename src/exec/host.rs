@@ -83,6 +83,12 @@ pub struct AttributeAnswer<'a> {
     pub(super) strings: &'a mut Strings,
 }
 
+impl std::fmt::Debug for AttributeAnswer<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("AttributeAnswer").field("ty", &self.ty).field("lanes", &self.lanes).finish_non_exhaustive()
+    }
+}
+
 impl<'a> AttributeAnswer<'a> {
     /// The lanes that ask.
     pub fn lanes(&self) -> &'a [usize] {

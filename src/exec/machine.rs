@@ -25,6 +25,12 @@ pub struct Machine {
     pub budget: u64,
 }
 
+impl std::fmt::Debug for Machine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Machine").field("budget", &self.budget).finish_non_exhaustive()
+    }
+}
+
 impl Default for Machine {
     fn default() -> Self {
         Self::new()
@@ -97,7 +103,9 @@ impl Machine {
     /// those that it was built to keep.
     pub fn output<'m>(&'m self, group: &'m Group, name: &str) -> Option<OutputView<'m>> {
         let regs = self.files.get(&group.id)?;
-        let named = |layer: &str, own: &str| own == name || name.strip_prefix(layer).is_some_and(|rest| rest.strip_prefix('.') == Some(own));
+        let named = |layer: &str, own: &str| {
+            own == name || name.strip_prefix(layer).is_some_and(|rest| rest.strip_prefix('.') == Some(own))
+        };
         let output = group.program.outputs.iter().rev().find(|output| named(&output.layer, &output.name))?;
         Some(OutputView { output, program: &group.program, regs, tree: &self.tree })
     }

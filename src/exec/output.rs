@@ -82,7 +82,12 @@ impl<'m> OutputView<'m> {
     }
 
     /// The numbers of an array in one lane: number after number, each a column.
-    fn elements<T: Copy + 'm>(&self, info: &ArrayInfo, columns: &'m [T], lane: usize) -> impl Iterator<Item = T> + use<'m, T> {
+    fn elements<T: Copy + 'm>(
+        &self,
+        info: &ArrayInfo,
+        columns: &'m [T],
+        lane: usize,
+    ) -> impl Iterator<Item = T> + use<'m, T> {
         let lanes = if info.uniform { 1 } else { self.regs.lanes };
         columns.chunks(lanes.max(1)).map(move |column| at_lane(column, lane))
     }

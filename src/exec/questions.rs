@@ -90,7 +90,9 @@ impl Run<'_> {
         for reg in &dst[1..] {
             match kind {
                 Kind::Float => floats.push(std::mem::take(&mut self.regs.floats[reg.0 as usize])),
-                Kind::Int | Kind::String | Kind::Closure => ints.push(std::mem::take(&mut self.regs.ints[reg.0 as usize])),
+                Kind::Int | Kind::String | Kind::Closure => {
+                    ints.push(std::mem::take(&mut self.regs.ints[reg.0 as usize]))
+                }
             }
         }
         lanes.iter().for_each(|&lane| {

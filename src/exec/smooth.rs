@@ -4,8 +4,8 @@ use super::lane::Lane;
 use crate::ir::op::Smooth;
 use crate::ops::color::{self, ColorSpace};
 use crate::ops::color_slope::transformc_slope;
-use crate::ops::spline::{self, Basis};
 use crate::ops::matrix;
+use crate::ops::spline::{self, Basis};
 
 /// How many knots of a spline count: as many as asked for, and as there are.
 fn counted(a: &Lane, knots: u32) -> usize {

@@ -31,6 +31,12 @@ pub struct Builder {
     simplify: bool,
 }
 
+impl std::fmt::Debug for Builder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Builder").field("program", &self.program).finish_non_exhaustive()
+    }
+}
+
 impl Builder {
     /// A builder. Without `simplify` every instruction is kept as it is asked for.
     pub fn new(simplify: bool) -> Self {

@@ -245,10 +245,10 @@ impl Routine {
             Routine::Substr => pure(smallvec![(String, 1), (Int, 2)], one(String)),
             Routine::Concat => pure(smallvec![(String, 2)], one(String)),
             Routine::Stof => pure(one(String), one(Float)),
-            Routine::Regex { positions, .. } => pure(smallvec![(String, 2)], smallvec![(Int, positions.saturating_add(1))]),
-            Routine::Split(parts) => {
-                pure(smallvec![(String, 2), (Int, 1)], smallvec![(Int, 1), (String, *parts)])
+            Routine::Regex { positions, .. } => {
+                pure(smallvec![(String, 2)], smallvec![(Int, positions.saturating_add(1))])
             }
+            Routine::Split(parts) => pure(smallvec![(String, 2), (Int, 1)], smallvec![(Int, 1), (String, *parts)]),
             Routine::Format(format) => pure(format.takes().collect(), one(String)),
             Routine::Print(to, format) => {
                 let file = (*to == PrintTo::File).then_some((String, 1));

@@ -4,21 +4,7 @@
 //! [`render`] is that in one go. Threads take tile after tile. Each has one `Wave` of memory, in which the tile's paths advance
 //! together through the stages. Shaders and closures are met in one file, `shading`.
 //!
-//! # The way of a camera ray
-//!
-//! 1. `renderer::Renderer::round` cuts the round into tasks (`rounds::Rounds::next`), of which threads take one at a time
-//! 2. `trace::render_tile` fills a wave with paths (`stages/camera::start`)
-//! 3. `trace::trace` names the stages of a bounce in their order:
-//!    1. `stages/intersect::intersect` asks `accel` for the hits
-//!    2. `stages/background::background` adds the sky to what missed
-//!    3. `stages/sort::sort` sorts the hits by material
-//!    4. `stages/shade::shade` makes points of hits (`points::fill`), runs their shaders (`shading::Shading::shade`) and adds
-//!       what they emit (`emission`)
-//!    5. `stages/light::sample_light` queues rays to lights
-//!    6. `stages/scatter::scatter` sends the paths on
-//!    7. `stages/shadow::trace_shadows` adds what the queued rays bring
-//! 4. `film::TileSums::add` weighs the sample into the pixels around it
-//! 5. `film::Film::picture` divides sums by weights
+//! The way of a camera ray, stage by stage, is in the documentation of the crate.
 //!
 //! A file uses only files that do not use it, from the ground up: `accel` and `segment` know rays, `path` knows what a
 //! path carries, `wave` is the memory that the stages share, and a stage knows no other one.

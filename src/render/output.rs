@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// The kinds of files that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// OpenEXR, linear, 32-bit floats.
     Exr,

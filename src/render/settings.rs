@@ -6,6 +6,7 @@ use crate::{closure, exec};
 
 /// How light reaches a surface point: the methods that may be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LightStrategy {
     /// Light samples and scattering samples, weighted by the power heuristic. The least noise almost everywhere.
     #[default]

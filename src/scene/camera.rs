@@ -24,6 +24,7 @@ impl Default for Camera {
 
 /// What keeps a camera from making a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CameraFlaw {
     /// The eye is nowhere: a coordinate is not a finite number.
     Eye,

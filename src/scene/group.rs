@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 /// What a group is used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Usage {
     /// The usual one: colour and light of a surface.
     Surface,
@@ -37,6 +38,7 @@ impl Usage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // The variants are the language's own types.
 #[allow(missing_docs)]
+#[non_exhaustive]
 pub enum ParamType {
     Int,
     Float,

@@ -8,13 +8,13 @@ mod scratch;
 use mutate::{Choice, mutated};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use velour::closure::Library;
 use velour::compile::Compiler;
 use velour::exec::{Group, Machine, Points};
 use velour::ir::op::*;
 use velour::ir::print::listing;
 use velour::ir::program::*;
 use velour::ir::verify::{Problem, verify};
-use velour::closure::Library;
 use velour::lang::closures::ClosureId;
 use velour::lang::types::Type;
 use velour_grammar::Span;
@@ -189,7 +189,12 @@ fn promises_beside_the_instructions_are_checked() {
         }),
         Problem::LeftFromOutside(ScopeId(0))
     );
-    let string = |number| RegInfo { kind: Kind::String, source: Source::Const(Const::String(number)), mutable: false, uniform: true };
+    let string = |number| RegInfo {
+        kind: Kind::String,
+        source: Source::Const(Const::String(number)),
+        mutable: false,
+        uniform: true,
+    };
     assert_eq!(with(&|p| p.regs.push(string(i32::MAX))), Problem::NoSymbol(i32::MAX));
     assert_eq!(with(&|p| p.regs.push(string(-1))), Problem::NoSymbol(-1));
     let output = |value| Output { layer: String::new(), name: "x".to_owned(), ty: Type::FLOAT, value };

@@ -43,9 +43,14 @@ fn registers(instr: &mut Instr, visit: &mut impl FnMut(&mut Reg)) {
         Instr::Unary(_, a, b) | Instr::Test(_, a, b) | Instr::IntUnary(_, a, b) | Instr::IntToFloat(a, b) => {
             [a, b].into_iter().for_each(visit);
         }
-        Instr::FloatToInt(a, b) | Instr::Derivative(a, b, _) | Instr::ClosureAbsent(a, b) => [a, b].into_iter().for_each(visit),
+        Instr::FloatToInt(a, b) | Instr::Derivative(a, b, _) | Instr::ClosureAbsent(a, b) => {
+            [a, b].into_iter().for_each(visit)
+        }
         Instr::Move { dst, src, .. } => [dst, src].into_iter().for_each(visit),
-        Instr::Binary(_, a, b, c) | Instr::Compare(_, a, b, c) | Instr::IntBinary(_, a, b, c) | Instr::ClosureAdd(a, b, c) => {
+        Instr::Binary(_, a, b, c)
+        | Instr::Compare(_, a, b, c)
+        | Instr::IntBinary(_, a, b, c)
+        | Instr::ClosureAdd(a, b, c) => {
             [a, b, c].into_iter().for_each(visit);
         }
         Instr::Select(a, b, c, d) | Instr::ClosureSelect(a, b, c, d) => [a, b, c, d].into_iter().for_each(visit),
@@ -66,7 +71,8 @@ fn some_block<'b>(block: &'b mut Block, choice: &mut Choice) -> &'b mut Block {
     if choice.once_in(2) || inner.is_none() {
         return block;
     }
-    let nested: Vec<usize> = (0..block.len()).filter(|&at| !matches!(block[at], Node::Instr(_) | Node::Leave(_))).collect();
+    let nested: Vec<usize> =
+        (0..block.len()).filter(|&at| !matches!(block[at], Node::Instr(_) | Node::Leave(_))).collect();
     let at = nested[choice.below(nested.len())];
     match &mut block[at] {
         Node::If(_, a, b) => some_block(if choice.once_in(2) { a } else { b }, choice),
@@ -202,7 +208,8 @@ pub fn another(choice: &mut Choice) -> Routine {
         6 => Routine::Split(number(choice)),
         7 => {
             let count = number(choice);
-            let ty = [AttributeType::Ints(count), AttributeType::Floats(count), AttributeType::Strings(count)][choice.below(3)];
+            let ty = [AttributeType::Ints(count), AttributeType::Floats(count), AttributeType::Strings(count)]
+                [choice.below(3)];
             Routine::Attribute(AttributeQuery { ty, slopes: choice.once_in(2) })
         }
         8 => Routine::Format(format(choice)),
@@ -246,9 +253,8 @@ fn function(choice: &mut Choice) -> Smooth {
 
 /// A format whose text may or may not fit its arguments.
 fn format(choice: &mut Choice) -> TextFormat {
-    let args = (0..choice.below(3)).map(|_| {
-        [TextArg::Ints(1), TextArg::Floats(3), TextArg::Strings(1), TextArg::Floats(0)][choice.below(4)]
-    });
+    let args = (0..choice.below(3))
+        .map(|_| [TextArg::Ints(1), TextArg::Floats(3), TextArg::Strings(1), TextArg::Floats(0)][choice.below(4)]);
     let args = args.collect();
     let text = ["%d %g %s", "%s", "", "%", "%*d", "%5.3f\n"][choice.below(6)].to_owned();
     TextFormat { text, args }

@@ -27,7 +27,8 @@ pub fn program(choice: &mut Choice, table: &ClosureTable) -> Program {
     let mut maker = Maker { program: Program::default(), choice, table, ready: Vec::new(), open: Vec::new(), left };
     maker.registers();
     for _ in 0..maker.choice.below(3) {
-        let (kind, len, components) = (maker.choice.kind(), maker.choice.below(5) as u32, 1 + maker.choice.below(3) as u32);
+        let (kind, len, components) =
+            (maker.choice.kind(), maker.choice.below(5) as u32, 1 + maker.choice.below(3) as u32);
         let components = if kind == Kind::Closure { 1 } else { components };
         let uniform = maker.choice.once_in(4);
         maker.program.arrays.push(ArrayInfo { kind, len, components, uniform });
@@ -221,7 +222,9 @@ impl Maker<'_> {
             ParamKind::Int => vec![self.some(Kind::Int)],
             ParamKind::String => vec![self.some(Kind::String)],
             ParamKind::Closure => vec![self.some(Kind::Closure)],
-            ParamKind::Color | ParamKind::Vector | ParamKind::Normal => (0..3).map(|_| self.some(Kind::Float)).collect(),
+            ParamKind::Color | ParamKind::Vector | ParamKind::Normal => {
+                (0..3).map(|_| self.some(Kind::Float)).collect()
+            }
         }
     }
 }

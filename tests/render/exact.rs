@@ -175,7 +175,10 @@ fn what_is_not_a_number_is_dropped_and_told_once() {
     assert!(image.pixels.iter().all(|p| p.is_finite()));
     assert!((middle(&image) - 0.5).abs() < 0.02, "the rest of the path goes on: {}", middle(&image));
     let [report] = image.about.reports.as_slice() else { panic!("{:?}", image.about.reports) };
-    assert_eq!(report.to_string(), "memory:2:73: error: `emission` is dropped where a parameter or weight of it is not a number");
+    assert_eq!(
+        report.to_string(),
+        "memory:2:73: error: `emission` is dropped where a parameter or weight of it is not a number"
+    );
 }
 
 /// A closed mesh of triangles, each of them a light, seen from inside: nothing leaks between them.

@@ -283,7 +283,7 @@ fn awkward_rays(count: u32) -> Vec<Ray> {
         numbers[3..6].copy_from_slice(&direction(i, 5).to_array());
         numbers[6] = 3.0;
         for (k, x) in numbers.iter_mut().enumerate() {
-            let changed = if i % 4 == 0 { k == (dice[0][0] * 7.0) as usize } else { dice[k][1] < 0.5 };
+            let changed = if i.is_multiple_of(4) { k == (dice[0][0] * 7.0) as usize } else { dice[k][1] < 0.5 };
             if changed {
                 *x = AWKWARD[(dice[k][2] * AWKWARD.len() as f32) as usize];
             }

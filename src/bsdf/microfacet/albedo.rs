@@ -48,6 +48,7 @@ pub const BLOCK: usize = 8;
 type Cell = [Vec4; QUADS];
 
 /// The cells of one width for all cosines.
+#[derive(Debug)]
 pub struct Row {
     alpha: f32,
     cells: [Cell; COSINES],
@@ -144,8 +145,8 @@ fn cosine_axis(cos: f32, alpha: f32) -> f32 {
 impl FacetTable {
     /// The albedos of all widths of a distribution under a shadowing term, made when they are first asked for.
     pub fn of<D: Distribution>(geometry: Geometry) -> &'static FacetTable {
-        const NONE: [OnceLock<FacetTable>; Geometry::ALL.len()] = [const { OnceLock::new() }; Geometry::ALL.len()];
-        static TABLES: [[OnceLock<FacetTable>; Geometry::ALL.len()]; Facets::COUNT] = [NONE; Facets::COUNT];
+        static TABLES: [[OnceLock<FacetTable>; Geometry::ALL.len()]; Facets::COUNT] =
+            [const { [const { OnceLock::new() }; Geometry::ALL.len()] }; Facets::COUNT];
         TABLES[D::FACETS as usize][geometry as usize].get_or_init(|| FacetTable::build::<D>(geometry))
     }
 

@@ -35,6 +35,7 @@ const LOG2_MIN: f32 = -4.058_893_7;
 
 /// How the albedo of a sheen with an exact shadowing term is found; other terms have one polynomial only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum SheenAlbedo {
     /// The first 4 x 3 terms of the default's polynomial: errs by up to 1.5e-2.
     Short,

@@ -16,6 +16,7 @@ pub const CURVE_COLUMNS: usize = 9;
 pub type CurveFit = [[f32; CURVE_COLUMNS]; CURVE];
 
 /// Coefficients of a sampler: of ln a, and of b over sin theta_o.
+#[derive(Clone, Copy, Debug)]
 pub struct ProposalFit {
     /// Coefficients of ln a.
     pub log_a: &'static [f32; 9],

@@ -21,6 +21,7 @@ use std::str::FromStr;
 
 /// How sheen directions are sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum SheenSampling {
     /// Linearly transformed cosine with 10 % of uniform samples. The default: 2 to 6 times less variance.
     #[default]

@@ -145,7 +145,8 @@ impl Walk<'_> {
                     self.inner(body)?;
                 }
                 Node::Scope(id, body) => {
-                    let found = self.scope(*id).and_then(|open| if open { Err(Problem::OpenedTwice(*id)) } else { Ok(()) });
+                    let found =
+                        self.scope(*id).and_then(|open| if open { Err(Problem::OpenedTwice(*id)) } else { Ok(()) });
                     self.here(found)?;
                     self.node += 1;
                     self.open[id.0 as usize] = true;

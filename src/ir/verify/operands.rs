@@ -23,7 +23,9 @@ fn base(base: Base) -> (Kind, u32) {
         Base::Int => Kind::Int,
         Base::String => Kind::String,
         Base::Closure => Kind::Closure,
-        Base::Void | Base::Float | Base::Color | Base::Point | Base::Vector | Base::Normal | Base::Matrix => Kind::Float,
+        Base::Void | Base::Float | Base::Color | Base::Point | Base::Vector | Base::Normal | Base::Matrix => {
+            Kind::Float
+        }
     };
     (kind, base.components() as u32)
 }

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// The laws that are checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Check {
     /// Does it scatter at all?
     Scatters,

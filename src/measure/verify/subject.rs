@@ -5,6 +5,7 @@ use crate::math::columns::Column3;
 
 /// What a subject says about one of the laws.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Promise {
     /// It is kept: breaking it fails.
     #[default]

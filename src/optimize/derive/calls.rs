@@ -43,7 +43,8 @@ impl Writer<'_> {
     /// Asks the host for the derivatives as well.
     fn attribute_slope(&mut self, attribute: AttributeQuery, mut dst: Vec<Reg>, src: Vec<Reg>, span: Span) {
         let values = dst[1..].to_vec();
-        let [dx, dy] = [0, 1].map(|_| values.iter().map(|_| self.program.reg(Kind::Float, false)).collect::<Vec<Reg>>());
+        let [dx, dy] =
+            [0, 1].map(|_| values.iter().map(|_| self.program.reg(Kind::Float, false)).collect::<Vec<Reg>>());
         for ((&value, &x), &y) in values.iter().zip(&dx).zip(&dy) {
             self.slopes.insert(value, [Some(x), Some(y)]);
         }

@@ -1,12 +1,13 @@
 //! Derivatives: forward differentiation of exactly the values whose derivatives are read.
 //!
-//! A first walk, repeated until nothing changes, finds the registers that matter: sources of [`Instr::Derivative`] and
-//! whatever they are computed from. A second walk writes, after each instruction that computes such a register, the
+//! A search finds the registers that matter: sources of [`Instr::Derivative`] and whatever they are computed from. A walk
+//! writes, after each instruction that computes such a register, the
 //! instructions for its two derivatives. What has no derivative (ints, strings, constants, steps) counts as zero.
 
 mod calls;
 mod rules;
 
+use super::flow::Flow;
 use crate::ir::op::*;
 use crate::ir::program::*;
 use crate::lang::globals::Global;
@@ -14,12 +15,7 @@ use std::collections::HashMap;
 
 /// Replaces every [`Instr::Derivative`] by the derivative itself.
 pub fn expand(program: &mut Program) {
-    let mut needs =
-        Needs { regs: vec![false; program.regs.len()], arrays: vec![false; program.arrays.len()], changed: true };
-    while needs.changed {
-        needs.changed = false;
-        needs.block(&program.body);
-    }
+    let needs = Needs::of(program);
     if !needs.regs.contains(&true) && !has_derivatives(&program.body) {
         return;
     }
@@ -39,33 +35,42 @@ fn has_derivatives(block: &Block) -> bool {
 struct Needs {
     regs: Vec<bool>,
     arrays: Vec<bool>,
-    changed: bool,
+    /// What has been found to matter, and where that is computed has not been looked at.
+    open_regs: Vec<Reg>,
+    open_arrays: Vec<ArrayId>,
 }
 
 impl Needs {
-    /// Walks from the last instruction to the first, so that one walk does for straight code.
-    fn block(&mut self, block: &Block) {
-        for node in block.iter().rev() {
-            match node {
-                Node::Instr(instr) => self.instr(instr),
-                Node::If(_, a, b) => {
-                    self.block(b);
-                    self.block(a);
+    /// What matters in a program: from the sources of derivatives back to what they are computed from.
+    fn of(program: &Program) -> Self {
+        let flow = Flow::of(program);
+        let (regs, arrays) = (vec![false; program.regs.len()], vec![false; program.arrays.len()]);
+        let mut needs = Needs { regs, arrays, open_regs: Vec::new(), open_arrays: Vec::new() };
+        for placed in &flow.nodes {
+            if let Node::Instr(instr @ Instr::Derivative(..)) = placed.node {
+                needs.instr(instr);
+            }
+        }
+        loop {
+            let computed = if let Some(reg) = needs.open_regs.pop() {
+                flow.writers.of(reg.0)
+            } else if let Some(array) = needs.open_arrays.pop() {
+                flow.setters.of(array.0)
+            } else {
+                return needs;
+            };
+            for node in computed {
+                if let Node::Instr(instr) = flow.nodes[node].node {
+                    needs.instr(instr);
                 }
-                Node::Loop { head, body, .. } => {
-                    self.block(body);
-                    self.block(head);
-                }
-                Node::Scope(_, body) => self.block(body),
-                Node::Leave(_) => {}
             }
         }
     }
 
     fn mark(&mut self, reg: Reg) {
-        let slot = &mut self.regs[reg.0 as usize];
-        self.changed |= !*slot;
-        *slot = true;
+        if !std::mem::replace(&mut self.regs[reg.0 as usize], true) {
+            self.open_regs.push(reg);
+        }
     }
 
     fn instr(&mut self, instr: &Instr) {
@@ -96,9 +101,9 @@ impl Needs {
             }
             Instr::Move { src, .. } => self.mark(*src),
             Instr::ArrayGet { array, .. } => {
-                let slot = &mut self.arrays[array.0 as usize];
-                self.changed |= !*slot;
-                *slot = true;
+                if !std::mem::replace(&mut self.arrays[array.0 as usize], true) {
+                    self.open_arrays.push(*array);
+                }
             }
             Instr::Call { routine, src, .. } => self.call(routine, src),
             // There are no pairs yet, and the others write no floats or floats that are steps.
@@ -300,7 +305,9 @@ impl Writer<'_> {
             }
             Instr::Call { routine, dst, src, span } => self.call_slope(routine, dst, src, span),
             // What has no slope is never asked for one; see `Needs::instr`.
-            Instr::Derivative(..) | Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => self.emit(instr),
+            Instr::Derivative(..) | Instr::Fused(..) | Instr::IntToFloat(..) | Instr::FloatToInt(..) => {
+                self.emit(instr)
+            }
             Instr::Compare(..) | Instr::Test(..) | Instr::IntUnary(..) | Instr::IntBinary(..) => self.emit(instr),
             Instr::Leaf { .. } | Instr::ClosureAdd(..) | Instr::ClosureScale(..) => self.emit(instr),
             Instr::ClosureSelect(..) | Instr::ClosureAbsent(..) => self.emit(instr),
