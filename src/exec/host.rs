@@ -1,8 +1,4 @@
 //! What a host gives to its shaders besides points, and what it hears from them.
-//!
-//! Decision (2026-11-29): what OSL calls userdata, the values that a mesh carries to its points, is asked for as an attribute of the
-//! object being shaded, by `getattribute`, and by nothing else, because a parameter's value is known when a group is built, and
-//! folded into its program; instead of a second kind of question that parameters would ask at every point.
 
 use super::points::{Points, RAY_TYPES};
 use super::report::Report;

@@ -7,21 +7,22 @@ use crate::ir::op::{PrintTo, TextArg, TextFormat};
 use crate::ir::program::Reg;
 use crate::lang::symbols::Symbol;
 use crate::ops::format::{FormatArg, format};
+use smallvec::SmallVec;
 use std::sync::Arc;
 use velour_grammar::Span;
 
 /// The value of one argument.
 enum Value<'r> {
-    Ints(Vec<i32>),
-    Floats(Vec<f32>),
-    Strings(Vec<&'r str>),
+    Ints(SmallVec<[i32; 4]>),
+    Floats(SmallVec<[f32; 4]>),
+    Strings(SmallVec<[&'r str; 2]>),
     Closure(String),
 }
 
 impl Run<'_> {
     fn text_of(&self, wanted: &TextFormat, src: &[Reg], lane: usize) -> String {
         let mut rest = src;
-        let mut values = Vec::new();
+        let mut values: SmallVec<[Value; 4]> = SmallVec::new();
         for arg in &wanted.args {
             let count = match arg {
                 TextArg::Ints(n) | TextArg::Floats(n) | TextArg::Strings(n) => *n as usize,
@@ -42,7 +43,7 @@ impl Run<'_> {
                 }
             });
         }
-        let args: Vec<FormatArg> = values
+        let args: SmallVec<[FormatArg; 4]> = values
             .iter()
             .map(|value| match value {
                 Value::Ints(v) => FormatArg::Int(v),

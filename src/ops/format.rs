@@ -124,24 +124,41 @@ pub fn format(format: &str, args: &[FormatArg]) -> Result<String, FormatError> {
 
 /// Appends all elements of an argument, single spaces between them.
 fn append(out: &mut String, c: Conversion, arg: &FormatArg) {
-    let texts: Vec<String> = match arg {
-        FormatArg::Int(values) => values.iter().map(|v| integer(c, *v)).collect(),
-        FormatArg::Float(values) => values.iter().map(|v| float(c, *v as f64)).collect(),
-        FormatArg::Str(values) => values.iter().map(|v| string(c, v)).collect(),
-        FormatArg::Closure(text) => vec![string(c, text)],
-    };
-    out.push_str(&texts.join(" "));
+    match arg {
+        FormatArg::Int(values) => each(out, values, |out, value| integer(out, c, *value)),
+        FormatArg::Float(values) => each(out, values, |out, value| float(out, c, *value as f64)),
+        FormatArg::Str(values) => each(out, values, |out, value| string(out, c, value)),
+        FormatArg::Closure(text) => string(out, c, text),
+    }
+}
+
+fn each<T>(out: &mut String, values: &[T], mut write: impl FnMut(&mut String, &T)) {
+    for (at, value) in values.iter().enumerate() {
+        if at > 0 {
+            out.push(' ');
+        }
+        write(out, value);
+    }
 }
 
 /// Fills a field: `sign` stays in front of padding zeros.
-fn pad(c: Conversion, zeros: bool, sign: &str, body: &str) -> String {
-    let missing = c.width.saturating_sub(sign.chars().count() + body.chars().count());
+fn pad(out: &mut String, c: Conversion, zeros: bool, sign: &str, body: &str) {
+    let missing = match c.width {
+        0 => 0,
+        width => width.saturating_sub(sign.chars().count() + body.chars().count()),
+    };
+    let fill = |out: &mut String, with: char| out.extend(std::iter::repeat_n(with, missing));
+    let zeros = zeros && c.zero && !c.left;
+    if !c.left && !zeros {
+        fill(out, ' ');
+    }
+    out.push_str(sign);
+    if zeros {
+        fill(out, '0');
+    }
+    out.push_str(body);
     if c.left {
-        format!("{sign}{body}{}", " ".repeat(missing))
-    } else if zeros && c.zero {
-        format!("{sign}{}{body}", "0".repeat(missing))
-    } else {
-        format!("{}{sign}{body}", " ".repeat(missing))
+        fill(out, ' ');
     }
 }
 
@@ -154,16 +171,16 @@ fn sign_of(c: Conversion, negative: bool) -> &'static str {
     }
 }
 
-fn string(c: Conversion, s: &str) -> String {
+fn string(out: &mut String, c: Conversion, s: &str) {
     // Precision counts bytes in C; a character is never cut in two here.
     let mut end = c.precision.unwrap_or(s.len()).min(s.len());
     while !s.is_char_boundary(end) {
         end -= 1;
     }
-    pad(c, false, "", &s[..end])
+    pad(out, c, false, "", &s[..end]);
 }
 
-fn integer(c: Conversion, value: i32) -> String {
+fn integer(out: &mut String, c: Conversion, value: i32) {
     let (sign, digits) = match c.letter {
         'x' => (if c.alternate && value != 0 { "0x" } else { "" }, format!("{value:x}")),
         'X' => (if c.alternate && value != 0 { "0X" } else { "" }, format!("{value:X}")),
@@ -176,16 +193,16 @@ fn integer(c: Conversion, value: i32) -> String {
         Some(least) => format!("{digits:0>least$}"),
         None => digits,
     };
-    pad(c, c.precision.is_none(), sign, &digits)
+    pad(out, c, c.precision.is_none(), sign, &digits);
 }
 
-fn float(c: Conversion, value: f64) -> String {
+fn float(out: &mut String, c: Conversion, value: f64) {
     let sign = sign_of(c, value.is_sign_negative());
     let a = value.abs();
     let upper = c.letter.is_ascii_uppercase();
     if !a.is_finite() {
         let name = if a.is_nan() { "nan" } else { "inf" };
-        return pad(c, false, sign, &if upper { name.to_uppercase() } else { name.to_owned() });
+        return pad(out, c, false, sign, &if upper { name.to_uppercase() } else { name.to_owned() });
     }
     let precision = c.precision.unwrap_or(6);
     let body = match c.letter.to_ascii_lowercase() {
@@ -193,7 +210,7 @@ fn float(c: Conversion, value: f64) -> String {
         'g' => general(a, precision.max(1), c.alternate),
         _ => fixed(a, precision, c.alternate),
     };
-    pad(c, true, sign, &if upper { body.to_uppercase() } else { body })
+    pad(out, c, true, sign, &if upper { body.to_uppercase() } else { body });
 }
 
 fn fixed(a: f64, precision: usize, alternate: bool) -> String {
@@ -203,11 +220,11 @@ fn fixed(a: f64, precision: usize, alternate: bool) -> String {
 
 /// Mantissa digits and decimal exponent of `a`, rounded.
 fn scientific(a: f64, precision: usize) -> (String, i32) {
-    let text = format!("{a:.precision$e}");
-    match text.split_once('e') {
-        Some((mantissa, exponent)) => (mantissa.to_owned(), exponent.parse().unwrap_or(0)),
-        None => (text, 0),
-    }
+    let mut text = format!("{a:.precision$e}");
+    let Some(end) = text.find('e') else { return (text, 0) };
+    let exponent = text[end + 1..].parse().unwrap_or(0);
+    text.truncate(end);
+    (text, exponent)
 }
 
 fn with_exponent(mantissa: &str, exponent: i32) -> String {
@@ -224,14 +241,35 @@ fn exponential(a: f64, precision: usize, alternate: bool) -> String {
 /// The shorter of the other two, with `precision` significant digits and no zeros at the end unless asked for.
 fn general(a: f64, precision: usize, alternate: bool) -> String {
     let (mantissa, exponent) = scientific(a, precision - 1);
-    let trim = |s: String| {
-        if alternate || !s.contains('.') { s } else { s.trim_end_matches('0').trim_end_matches('.').to_owned() }
-    };
-    if exponent < -4 || exponent >= precision as i32 {
-        return with_exponent(&trim(mantissa), exponent);
+    let with_power = exponent < -4 || exponent >= precision as i32;
+    let mut text = if with_power { mantissa } else { shifted(&mantissa, exponent) };
+    let pointed = text.contains('.');
+    if alternate && !with_power && !pointed {
+        text.push('.');
+    } else if !alternate && pointed {
+        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
     }
-    let decimals = (precision as i32 - 1 - exponent).max(0) as usize;
-    trim(fixed(a, decimals, alternate))
+    if with_power { with_exponent(&text, exponent) } else { text }
+}
+
+/// The digits of a mantissa with the point where the exponent puts it, which has as many digits as the exact value rounded there.
+fn shifted(mantissa: &str, exponent: i32) -> String {
+    let digits = mantissa.bytes().filter(|&digit| digit != b'.').map(char::from);
+    let mut out = String::with_capacity(mantissa.len() + 8);
+    if exponent < 0 {
+        out.push_str("0.");
+        out.extend(std::iter::repeat_n('0', -exponent as usize - 1));
+        out.extend(digits);
+        return out;
+    }
+    let whole = exponent as usize + 1;
+    for (at, digit) in digits.enumerate() {
+        if at == whole {
+            out.push('.');
+        }
+        out.push(digit);
+    }
+    out
 }
 
 /// Checks a format against the kinds of its arguments; `first` is the number by which the message calls the first of them.

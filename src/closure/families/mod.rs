@@ -10,6 +10,7 @@ mod hair;
 mod highlights;
 mod lights;
 mod straight;
+mod toon;
 mod usual;
 
 use super::definition::ClosureDef;
@@ -48,5 +49,7 @@ pub(super) fn all() -> Vec<ClosureDef> {
         diffuse::subsurface_bssrdf(),
         hair::chiang(),
         lights::uniform_edf(),
+        toon::diffuse_toon(),
+        toon::glossy_toon(),
     ]
 }
