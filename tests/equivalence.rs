@@ -1,10 +1,13 @@
-//! One meaning, however a shader is run: optimised or not, in batches of any width, every bit is the same.
+//! One meaning, however a shader is run: optimised or not, in batches of any width, by any instruction set, every bit is
+//! the same.
 //!
 //! The corpus is a handful of shaders written for their control flow, and programs made up at random from one seed.
 
+use std::sync::{Mutex, PoisonError};
 use velour::compile::Compiler;
 use velour::exec::{Group, MAX_LANES, Machine, Points, ReportKind, Values};
 use velour::ir::verify::verify;
+use velour::math::instruction_set::InstructionSet;
 
 /// The seed of all programs that are made up.
 const SEED: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -73,6 +76,9 @@ fn hash(text: &str) -> u64 {
     text.bytes().fold(1, |sum, byte| sum.wrapping_mul(SEED) ^ u64::from(byte))
 }
 
+/// The set in use is the whole process's: one test at a time turns it down.
+static SET: Mutex<()> = Mutex::new(());
+
 /// Runs a text in all ways and compares.
 fn same_everywhere(text: &str) {
     let shader = Compiler::new().compile("equal.osl", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -82,21 +88,27 @@ fn same_everywhere(text: &str) {
         verify(group.program(), group.table()).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
     }
     let reference = results(&plain, 1);
+    let hold = |group: &Group, width: usize, name: &str| {
+        let (printed, bits) = results(group, width);
+        assert!(
+            printed == reference.0,
+            "{name}, {width} lanes, print {:?}, not {:?}\n{text}",
+            printed.first(),
+            reference.0.first()
+        );
+        let differ = bits.iter().zip(&reference.1).position(|(a, b)| a != b);
+        assert!(
+            differ.is_none() && bits.len() == reference.1.len(),
+            "{name}, {width} lanes, differ at {differ:?}\n{text}"
+        );
+    };
     for (group, name) in [(&plain, "unoptimised"), (&best, "optimised")] {
-        for width in WIDTHS {
-            let (printed, bits) = results(group, width);
-            assert!(
-                printed == reference.0,
-                "{name}, {width} lanes, print {:?}, not {:?}\n{text}",
-                printed.first(),
-                reference.0.first()
-            );
-            let differ = bits.iter().zip(&reference.1).position(|(a, b)| a != b);
-            assert!(
-                differ.is_none() && bits.len() == reference.1.len(),
-                "{name}, {width} lanes, differ at {differ:?}\n{text}"
-            );
-        }
+        WIDTHS.iter().for_each(|&width| hold(group, width, name));
+    }
+    let _alone = SET.lock().unwrap_or_else(PoisonError::into_inner);
+    for set in InstructionSet::ALL {
+        let used = InstructionSet::most(set);
+        hold(&best, MAX_LANES, &format!("optimised, {used:?}"));
     }
 }
 
