@@ -2,7 +2,7 @@
 
 /// The first N terms of a Chebyshev series, by Clenshaw's recurrence.
 ///
-/// Domain: x in -1..1, at least N coefficients, N >= 1. Gives: the sum of c[k] T_k(x).
+/// Domain: x in -1..1, at least N coefficients, N >= 1. Gives: the sum of `c[k] T_k(x)`.
 #[inline(always)]
 pub fn chebyshev<const N: usize>(c: &[f32], x: f32) -> f32 {
     let (mut b1, mut b2) = (0.0, 0.0);

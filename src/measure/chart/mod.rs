@@ -1,7 +1,7 @@
 //! The chart of speed against accuracy: every method that competes with another, measured on the machine at hand.
 //!
 //! A file a figure. Each times its methods in turns ([`race`]), finds their errors against integrals in f64 that are computed
-//! then and there, and gives a [`Figure`]; [`draw`] and [`table`] turn figures into files.
+//! then and there, and gives a [`figure::Figure`]; [`draw`] and [`table`] turn figures into files.
 //!
 //! Decision (2026-11-22): truths are integrated anew in every run (a few seconds), because a stored one would go on to agree with
 //! whatever made it, instead of read from a file. Costs are medians with quartiles, because a mean follows every hiccup of
