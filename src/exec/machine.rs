@@ -17,6 +17,8 @@ pub const DEFAULT_BUDGET: u64 = 20_000_000;
 /// Runs shader groups over batches of points.
 pub struct Machine {
     files: HashMap<u64, Registers>,
+    /// The group of the batch before.
+    latest: Option<u64>,
     tree: Tree,
     host: Arc<dyn Host>,
     reports: Vec<Report>,
@@ -46,7 +48,7 @@ impl Machine {
     /// A machine whose shaders ask a host.
     pub fn with_host(host: Arc<dyn Host>) -> Self {
         let (files, tree, reports) = (HashMap::new(), Tree::default(), Vec::new());
-        Machine { files, tree, host, reports, scratch: Scratch::default(), budget: DEFAULT_BUDGET }
+        Machine { files, latest: None, tree, host, reports, scratch: Scratch::default(), budget: DEFAULT_BUDGET }
     }
 
     /// Runs a group over points and gives the closure tree of the batch. Its strings and the outputs ([`Machine::output`]) stay
@@ -57,10 +59,12 @@ impl Machine {
         if n == 0 {
             return &self.tree;
         }
-        if !self.files.contains_key(&group.id) {
+        // One look is enough for the group of the batch before.
+        if self.latest != Some(group.id) && !self.files.contains_key(&group.id) {
             // A group that is new here is a good moment to give back what dropped ones had.
             self.files.retain(|_, regs| regs.wanted());
         }
+        self.latest = Some(group.id);
         let regs = self.files.entry(group.id).or_insert_with(|| Registers::of(group));
         regs.prepare(group, n);
         regs.forget_closures();
@@ -74,7 +78,7 @@ impl Machine {
             tree: &mut self.tree,
             host: &*self.host,
             reports: &mut self.reports,
-            s: std::mem::take(&mut self.scratch),
+            s: &mut self.scratch,
             n,
             active: n,
             budget: self.budget,
@@ -83,7 +87,6 @@ impl Machine {
         run.s.begin(n, group.program.scopes as usize);
         run.block(&group.program.body);
         run.flush();
-        self.scratch = run.s;
         self.tree.root = group.program.result.and_then(|reg| regs.closures[reg.0 as usize]);
         &self.tree
     }

@@ -52,7 +52,7 @@ pub(super) struct Run<'a> {
     pub tree: &'a mut Tree,
     pub host: &'a dyn Host,
     pub reports: &'a mut Vec<Report>,
-    pub s: Scratch,
+    pub s: &'a mut Scratch,
     pub n: usize,
     pub active: usize,
     pub budget: u64,
