@@ -123,3 +123,8 @@ fn not_text(name: &str) -> Parsed {
     );
     Parsed { diagnostics, ..Parsed::default() }
 }
+
+/// The block of the README, as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
