@@ -11,4 +11,5 @@ mod materials;
 mod rays;
 mod rounds;
 mod shaders;
+mod sky;
 mod speed;
