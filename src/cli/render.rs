@@ -7,7 +7,7 @@ use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
-use crate::render::{Explanation, Image, Progress, Renderer, Settings, output};
+use crate::render::{Explanation, Image, LightChoice, LightPoints, Progress, Renderer, Settings, output};
 use crate::scene::{Scene, ShaderFiles};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -75,6 +75,12 @@ pub struct RenderArgs {
     /// How directions of sheen are drawn: ltc, uniform, cosine or normals
     #[arg(long, default_value = "ltc")]
     sheen_sampling: SheenSampling,
+    /// How a light is chosen among several: tree (by place) or power
+    #[arg(long, default_value = "tree")]
+    light_choice: LightChoice,
+    /// How a point of a flat light is chosen: solid (by solid angle) or area
+    #[arg(long, default_value = "solid")]
+    light_points: LightPoints,
     /// Say what the scene needs, and what it does not, before rendering
     #[arg(long)]
     explain: bool,
@@ -151,6 +157,8 @@ fn settings(args: &RenderArgs) -> Settings {
         max_bounces: args.max_bounces.unwrap_or(defaults.max_bounces),
         jitter: !args.no_jitter,
         alpha: args.alpha,
+        light_choice: args.light_choice,
+        light_points: args.light_points,
         closure: closure::Settings {
             layering: args.layering,
             shadowing: args.shadowing.unwrap_or_default(),

@@ -56,6 +56,8 @@ pub(super) struct Loops {
     pub sheen: Option<bool>,
     /// See [`Scatter::TOP`].
     pub top: bool,
+    /// Whether light comes through the surface.
+    pub crosses: bool,
     /// What the viewer decides.
     pub view: fn(Numbers, Choice, Triples, &mut [f32]),
     /// f cos and density, added to three columns and one.
@@ -104,6 +106,11 @@ impl LobeKind {
         !matches!(self.0.way, Way::Many(_))
     }
 
+    /// True for lobes with a density that see light behind the surface.
+    pub(super) fn crosses(self) -> bool {
+        matches!(self.0.way, Way::Many(loops) if loops.crosses)
+    }
+
     /// True for lobes that scatter light about evenly, whatever the directions: what a coat throws back at them comes out
     /// in the end. Sheens, and the light under a highlight, prefer directions, and take the rule that is safe for all.
     pub(super) fn is_even(self) -> bool {
@@ -148,6 +155,7 @@ impl<M: Scatter> OfModel<M> {
             views: M::VIEW,
             sheen: M::SHEEN,
             top: M::TOP,
+            crosses: !matches!(M::SIDE, Side::Same),
             view: view::<M>,
             evaluate: evaluate::<M>,
             sample: sample::<M>,

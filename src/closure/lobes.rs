@@ -76,6 +76,16 @@ impl Lobes {
         self.flat.lobes.iter().any(|&lobe| !self.flat.model(lobe).kind.is_delta())
     }
 
+    /// Calls `mark` with each lane, once or more, in which a lobe with a density sees light behind the surface.
+    pub fn crossing(&self, mut mark: impl FnMut(usize)) {
+        let (flat, n) = (&self.flat, self.flat.lanes);
+        let crosses = |index: &usize| flat.model(flat.lobes[*index]).kind.crosses();
+        for index in (0..flat.lobes.len()).filter(crosses) {
+            let weight = |k: usize, lane: usize| flat.weights[(3 * index + k) * n + lane];
+            (0..n).filter(|lane| (0..3).any(|k| weight(k, *lane) != 0.0)).for_each(&mut mark);
+        }
+    }
+
     /// The number of lobes.
     pub fn len(&self) -> usize {
         self.flat.lobes.len()

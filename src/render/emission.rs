@@ -8,13 +8,21 @@ use crate::lanes;
 use crate::math::columns::Column3;
 use glam::Vec3;
 
-/// Adds to a path the radiance of the surface that its ray has hit.
+/// Adds to a path the radiance of the surface that its ray has hit; `facing` is the path's of [`super::wave::Wave::facings`].
 #[inline]
-pub fn found_on_surface(world: &World, path: &mut Path, radiance: Vec3, material: usize, dropped: &mut Dropped) {
+pub fn found_on_surface(
+    world: &World,
+    path: &mut Path,
+    facing: Option<&Vec3>,
+    radiance: Vec3,
+    material: usize,
+    dropped: &mut Dropped,
+) {
     if radiance == Vec3::ZERO {
         return;
     }
-    let other = world.lights.pdf(&world.scene.geometry, &path.segment, path.from);
+    let facing = facing.copied().unwrap_or_default();
+    let other = || world.lights.pdf(&path.segment, path.from, facing);
     let weight = weight_of_found(world.settings.lights, path.pdf_solid_angle, other);
     path.gather(path.throughput * radiance * weight, material, dropped);
 }
@@ -29,15 +37,19 @@ pub fn found_in_sky(
     material: usize,
     dropped: &mut Dropped,
 ) {
-    let other = table.map_or(0.0, |t| t.pdf(path.segment.direction));
+    let other = || table.map_or(0.0, |t| t.pdf(path.segment.direction));
     let weight = weight_of_found(world.settings.lights, path.pdf_solid_angle, other);
     path.gather(path.throughput * radiance * weight, material, dropped);
 }
 
 /// The weight of emission that a scattered ray has found, where a light sample would have had density `other`.
 #[inline]
-fn weight_of_found(strategy: LightStrategy, own: f32, other: f32) -> f32 {
-    if other <= 0.0 || own == f32::INFINITY {
+fn weight_of_found(strategy: LightStrategy, own: f32, other: impl FnOnce() -> f32) -> f32 {
+    if own == f32::INFINITY {
+        return 1.0;
+    }
+    let other = other();
+    if other <= 0.0 {
         return 1.0;
     }
     match strategy {

@@ -7,7 +7,7 @@
 use super::accel::NOTHING;
 use super::host::host;
 use super::lanes::Draws;
-use super::light::{LightLanes, Lights};
+use super::light::{LightLanes, Lights, Lookers};
 use super::plan::{Needs, Plan, table_side};
 use super::points::{fill, fill_sky};
 use super::probe::probe;
@@ -105,8 +105,8 @@ impl MaterialNeeds {
     }
 }
 
-/// The albedo evaluators that a group's layers may call for: those of closures that cover what they nest, and of all that can lie
-/// in the top of one that nests a top.
+/// The albedo evaluators that a group's layers may call for: those of closures that cover what they nest, and of all that can
+/// lie in the top of one that nests a top.
 fn albedos(group: &Group, method: SheenAlbedo) -> Vec<&'static str> {
     let any_top = group.closures().any(|spec| spec.nests_a_top());
     let needed = |by: TopAlbedo| group.closures().any(|spec| spec.top_albedo == by && (any_top || spec.nests()));
@@ -183,7 +183,7 @@ fn light_savings(scene: &Scene, plan: &Plan, settings: &Settings, savings: &mut 
         return;
     }
     if plan.lights == 0 {
-        let ns = light_cost();
+        let ns = light_cost(settings);
         let cost = format!("{ns:.1} ns a hit for the choice, and one evaluation of the lobes and one shadow ray");
         savings.push(Saving { what: "sampling of lights".into(), cost });
     }
@@ -201,17 +201,17 @@ fn light_savings(scene: &Scene, plan: &Plan, settings: &Settings, savings: &mut 
 }
 
 /// Nanoseconds to choose a point of a light.
-fn light_cost() -> f64 {
+fn light_cost(settings: &Settings) -> f64 {
     let shape = Shape::Quad { corner: Vec3::Y, edge_x: Vec3::X, edge_y: Vec3::Z };
     let primitive = Primitive { shape, object: 0, normals: Primitive::NONE, uvs: Primitive::NONE };
     let geometry = Geometry { primitives: vec![primitive], ..Geometry::default() };
-    let lights = Lights::new(&geometry, &[(0, 1.0)]);
-    let (points, from) = (Column3::zeros(MAX_LANES), vec![NOTHING; MAX_LANES]);
+    let lights = Lights::new(&geometry, &[(0, 1.0)], settings.light_choice, settings.light_points);
+    let (p, from) = (Column3::zeros(MAX_LANES), vec![NOTHING; MAX_LANES]);
     let (mut draws, mut out) = (Draws::default(), LightLanes::default());
     draws.resize(MAX_LANES);
     time(|| {
         draws.draw(1, 2);
-        lights.sample(&points, &from, &draws.numbers, black_box(&mut out));
+        lights.sample(Lookers { p: &p, normal: &p, from: &from }, &draws.numbers, black_box(&mut out));
     })
 }
 

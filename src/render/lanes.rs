@@ -42,6 +42,9 @@ pub struct Lanes {
     pub primitives: Vec<u32>,
     /// What a unit of radiance adds to the sample.
     pub throughput: Column3,
+    /// From where light reaches the points, as [`super::shading::Shading::facing`] has it; filled where lights are chosen by
+    /// it.
+    pub facing: Column3,
     /// The paths' random numbers.
     pub draws: Draws,
 }

@@ -38,6 +38,8 @@
 pub mod accel;
 mod block;
 mod camera;
+#[cfg(test)]
+mod counts;
 mod emission;
 mod error;
 mod explain;
@@ -73,4 +75,4 @@ pub use image::{About, Image};
 pub use plan::{MaterialPlan, Needs, Plan};
 pub use progress::{Progress, Silent};
 pub use renderer::{Renderer, render};
-pub use settings::{LightStrategy, Settings};
+pub use settings::{LightChoice, LightPoints, LightStrategy, Settings};

@@ -1,6 +1,7 @@
 //! What a scene needs: decided once, before rendering, so that nothing else is computed.
 
-use super::settings::{LightStrategy, Settings};
+use super::light::by_tree;
+use super::settings::{LightPoints, LightStrategy, Settings};
 use super::sky::{LEAST_SIDE, MOST_SIDE};
 use crate::exec::Group;
 use crate::lang::globals::Global;
@@ -78,6 +79,10 @@ pub struct Plan {
     pub cones: bool,
     /// Primitives that are sampled as lights.
     pub lights: usize,
+    /// Whether lights are chosen by a hierarchy, and how points of them are; see [`LightPoints`].
+    pub light_tree: bool,
+    /// How points of lights are chosen.
+    pub light_points: LightPoints,
     /// The background's radiance is one constant.
     pub constant_background: bool,
     /// Directions a side in which the background is looked at for its importance table, a power of two; 0 when none is needed.
@@ -111,7 +116,15 @@ impl Plan {
             _ => 0,
         };
         let cones = materials.iter().any(|m| m.needs.any_derivative());
-        Plan { cones, materials, lights, constant_background: constant, background_table }
+        Plan {
+            cones,
+            materials,
+            lights,
+            light_tree: by_tree(lights, settings.light_choice),
+            light_points: settings.light_points,
+            constant_background: constant,
+            background_table,
+        }
     }
 }
 
@@ -123,7 +136,14 @@ impl fmt::Display for Plan {
             "lights: {}",
             match self.lights {
                 0 => "none, so no light sampling and no shadow rays to lights".to_owned(),
-                n => format!("{n} primitives are sampled, one a bounce"),
+                n => format!(
+                    "{n} primitives are sampled, one a bounce{}{}",
+                    or(self.light_tree, ", chosen by place from a hierarchy", or(n > 1, ", chosen by power", "")),
+                    match self.light_points {
+                        LightPoints::Area => "; their points by area",
+                        LightPoints::Solid => "; wide flat ones by solid angle",
+                    }
+                ),
             }
         )?;
         writeln!(

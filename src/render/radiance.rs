@@ -111,8 +111,8 @@ pub fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shadin
     Sky::Shader { material, table }
 }
 
-/// The brightest channel of the background in the middle of cells of a grid of `side` cells a side, as shadow rays see it; whatever
-/// is filtered there is filtered over the cell.
+/// The brightest channel of the background in the middle of cells of a grid of `side` cells a side, as shadow rays see it;
+/// whatever is filtered there is filtered over the cell.
 fn brightness(
     group: &Group,
     needs: &Needs,

@@ -18,7 +18,7 @@ pub const CAMERA: u32 = 0;
 /// Which set of a bounce.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// x, y the point on a light; z which light.
+    /// x, y the point on a light; z which light, and w what z leaves open among many.
     Light = 0,
     /// x which lobe, and with y the direction; z what else a lobe chooses; w the roulette.
     Scatter = 1,

@@ -3,6 +3,7 @@
 use super::error::SettingsError;
 use crate::scene::Options;
 use crate::{closure, exec};
+use std::str::FromStr;
 
 /// How light reaches a surface point: the methods that may be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,6 +16,57 @@ pub enum LightStrategy {
     ScatteringOnly,
     /// Light samples alone where a light can be sampled: noisy near lights and on shiny surfaces.
     LightsOnly,
+}
+
+/// How a light is chosen where there are several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum LightChoice {
+    /// By power alone, the same everywhere.
+    Power,
+    /// By a hierarchy, from three lights on: by power, place and normals. Source: Conty and Kulla 2018.
+    #[default]
+    Tree,
+}
+
+impl LightChoice {
+    /// All variants with the word that selects them.
+    pub const ALL: [(&'static str, LightChoice); 2] = [("power", LightChoice::Power), ("tree", LightChoice::Tree)];
+}
+
+/// How a point of a flat light is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum LightPoints {
+    /// By area.
+    Area,
+    /// By solid angle from close by, where the light's area is at least the square of its distance; else by area. Source:
+    /// Urena, Fajardo and King 2013; Arvo 1995.
+    #[default]
+    Solid,
+}
+
+impl LightPoints {
+    /// All variants with the word that selects them.
+    pub const ALL: [(&'static str, LightPoints); 2] = [("area", LightPoints::Area), ("solid", LightPoints::Solid)];
+}
+
+impl FromStr for LightChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == text);
+        found.map(|&(_, v)| v).ok_or_else(|| format!("unknown choice of lights \"{text}\"; take \"power\" or \"tree\""))
+    }
+}
+
+impl FromStr for LightPoints {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == text);
+        found.map(|&(_, v)| v).ok_or_else(|| format!("unknown points of lights \"{text}\"; take \"area\" or \"solid\""))
+    }
 }
 
 /// Independent halves of a film's samples that an error can be estimated from.
@@ -48,6 +100,10 @@ pub struct Settings {
     pub alpha: bool,
     /// How light is sampled.
     pub lights: LightStrategy,
+    /// How a light is chosen.
+    pub light_choice: LightChoice,
+    /// How a point of it is.
+    pub light_points: LightPoints,
     /// A shader global to show in place of the picture: 0 none, 1 Ng, 2 N, 3 dPdu, 4 dPdv, 5 uv.
     pub show_globals: u32,
     /// Lanes of one shading batch, at most `exec::MAX_LANES`; never changes the image.
@@ -75,6 +131,8 @@ impl Default for Settings {
             jitter: true,
             alpha: false,
             lights: LightStrategy::Combined,
+            light_choice: LightChoice::Tree,
+            light_points: LightPoints::Solid,
             show_globals: 0,
             batch_width: exec::MAX_LANES,
             tile_size: 16,

@@ -4,6 +4,7 @@ use crate::closure::tree::Tree;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::exec::{Group, Host, Machine, Points, Report};
 use crate::math::columns::Column3;
+use glam::Vec3;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -107,6 +108,12 @@ impl Shading {
     /// True when light samples can reach a lobe.
     pub fn takes_light_samples(&self) -> bool {
         self.lobes.has_non_delta()
+    }
+
+    /// The sides from which light reaches the points: their normals, or nothing where it comes from both.
+    pub fn facing(&self, out: &mut Column3) {
+        out.clone_from(&self.points.ng);
+        self.lobes.crossing(|lane| out.set(lane, Vec3::ZERO));
     }
 
     /// Evaluates all lobes toward `toward`.

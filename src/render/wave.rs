@@ -10,12 +10,15 @@ use super::segment::Segment;
 use super::shading::Shading;
 use super::world::World;
 use crate::math::columns::Column3;
+use glam::Vec3;
 use std::ops::Range;
 
 /// The paths of a tile and all scratch to advance them; nothing is allocated once it has grown.
 pub struct Wave {
     /// The paths.
     pub paths: Vec<Path>,
+    /// From where light reached the point that each path has left, where lights are chosen by it.
+    pub facings: Vec<Vec3>,
     /// Where in its pixel each path began, both in [0, 1].
     pub positions: Vec<[f32; 2]>,
     /// Paths still on their way.
@@ -97,6 +100,7 @@ impl Wave {
     pub fn new(world: &World) -> Self {
         Wave {
             paths: Vec::new(),
+            facings: Vec::new(),
             positions: Vec::new(),
             active: Vec::new(),
             next: Vec::new(),
@@ -117,6 +121,7 @@ impl Wave {
     /// Forgets all paths.
     pub fn clear(&mut self) {
         self.paths.clear();
+        self.facings.clear();
         self.positions.clear();
         self.active.clear();
         self.next.clear();

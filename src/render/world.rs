@@ -51,7 +51,7 @@ impl World {
         World {
             camera: RayCamera::new(&scene.camera, settings.width, settings.height),
             accel,
-            lights: Lights::new(&scene.geometry, &powers),
+            lights: Lights::new(&scene.geometry, &powers, settings.light_choice, settings.light_points),
             host,
             sky,
             object_emission,

@@ -7,6 +7,7 @@ mod emitters;
 mod exact;
 mod files;
 mod furnace;
+mod lights;
 mod materials;
 mod rays;
 mod rounds;

@@ -4,7 +4,7 @@ use super::figure::{Figure, Join, Point};
 use super::race::{Cost, summary};
 use super::table::short;
 use crate::closure::{Layering, settings::SheenSampling};
-use crate::render::{Image, LightStrategy, Settings, Silent, render};
+use crate::render::{Image, LightChoice, LightPoints, LightStrategy, Settings, Silent, render};
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::Instant;
@@ -46,7 +46,7 @@ type Variant = (&'static str, &'static str, fn(&mut Settings));
 
 const EXACT: &str = "exact layering";
 
-const VARIANTS: [Variant; 12] = [
+const VARIANTS: [Variant; 14] = [
     (EXACT, "defaults", |_| ()),
     (EXACT, "uniform sheen, no light samples", |s| {
         s.lights = LightStrategy::ScatteringOnly;
@@ -54,6 +54,8 @@ const VARIANTS: [Variant; 12] = [
     }),
     (EXACT, "ltc sheen, no light samples", |s| s.lights = LightStrategy::ScatteringOnly),
     (EXACT, "light samples only", |s| s.lights = LightStrategy::LightsOnly),
+    (EXACT, "lights by power", |s| s.light_choice = LightChoice::Power),
+    (EXACT, "lights by area", |s| s.light_points = LightPoints::Area),
     (EXACT, "uniform sheen", |s| s.closure.sheen_sampling = SheenSampling::Uniform),
     (EXACT, "cosine sheen", |s| s.closure.sheen_sampling = SheenSampling::Cosine),
     (EXACT, "half-vector sheen", |s| s.closure.sheen_sampling = SheenSampling::Normals),

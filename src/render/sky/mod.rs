@@ -1,10 +1,10 @@
 //! The background: a constant, or a shader with a table that samples directions by its brightness.
 //!
-//! `square` unrolls the sphere, `brightness` looks at the shader, `table` samples what was seen. Only the density comes from the
-//! table; radiance comes from the shader itself at each direction.
+//! `square` unrolls the sphere, `brightness` looks at the shader, `table` samples what was seen. Only the density comes from
+//! the table; radiance comes from the shader itself at each direction.
 //!
-//! Decision (2026-11-29): the sphere is unrolled to a square by a map that keeps areas and has no poles, because any cell is then
-//! met by a sun of half a degree wherever it stands; instead of azimuth and height, whose rows at the poles are four
+//! Decision (2026-11-29): the sphere is unrolled to a square by a map that keeps areas and has no poles, because any cell is
+//! then met by a sun of half a degree wherever it stands; instead of azimuth and height, whose rows at the poles are four
 //! degrees high in a table of 1024 x 1024.
 //!
 //! Decision (2026-11-29): the background is looked at in 1024 x 1024 directions whatever the scene says, and eight times finer

@@ -6,6 +6,7 @@ use crate::render::random;
 use crate::render::settings::HALVES;
 use crate::render::wave::Wave;
 use crate::render::world::World;
+use glam::Vec3;
 use std::ops::Range;
 
 /// Starts a path for each of `samples` of the pixel at (`x`, `y`).
@@ -29,6 +30,9 @@ pub fn start(world: &World, wave: &mut Wave, x: u32, y: u32, samples: Range<u32>
     let len = lanes.draws.seeds.len();
     let first = wave.paths.len() as u32;
     wave.active.extend(first..first + len as u32);
+    if world.lights.reads_normals() {
+        wave.facings.resize(first as usize + len, Vec3::ZERO);
+    }
     wave.positions.extend(across.iter().zip(down).map(|(x, y)| [*x, *y]));
     wave.paths.extend((0..len).map(|lane| {
         let direction = lanes.directions.get(lane);

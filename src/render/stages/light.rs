@@ -2,6 +2,7 @@
 
 use crate::render::accel::{NOTHING, Ray};
 use crate::render::emission::weigh_sampled;
+use crate::render::light::Lookers;
 use crate::render::path::ShadowRay;
 use crate::render::random::{Use, dimension_set};
 use crate::render::settings::LightStrategy;
@@ -24,10 +25,13 @@ pub fn sample_light(world: &World, wave: &mut Wave) {
 }
 
 fn sample_lights(world: &World, wave: &mut Wave) {
-    // The third chooses among lights.
-    let numbers = if world.lights.len() > 1 { 3 } else { 2 };
-    wave.lanes.draws.draw(dimension_set(wave.lanes.bounce, Use::Light), numbers);
-    world.lights.sample(&wave.shading.points.p, &wave.lanes.primitives, &wave.lanes.draws.numbers, &mut wave.lit);
+    let Wave { lanes, shading, lit, .. } = wave;
+    lanes.draws.draw(dimension_set(lanes.bounce, Use::Light), world.lights.numbers());
+    if world.lights.reads_normals() {
+        shading.facing(&mut lanes.facing);
+    }
+    let lookers = Lookers { p: &shading.points.p, normal: &lanes.facing, from: &lanes.primitives };
+    world.lights.sample(lookers, &lanes.draws.numbers, lit);
     wave.shading.toward.clone_from(&wave.lit.direction);
     weigh(world, wave);
     for lane in 0..wave.lanes.paths.len() {

@@ -18,7 +18,7 @@ const DEEP: u32 = 64;
 
 /// Samples a direction for each path and sends on those that still carry something.
 pub fn scatter(world: &World, wave: &mut Wave) {
-    let Wave { paths, next, lanes, shading, dropped, .. } = wave;
+    let Wave { paths, facings, next, lanes, shading, dropped, .. } = wave;
     let (bounce, material) = (lanes.bounce, lanes.material);
     let roulette = bounce >= world.settings.rr_depth;
     lanes.draws.draw(dimension_set(bounce, Use::Scatter), if roulette { 4 } else { 3 });
@@ -60,6 +60,9 @@ pub fn scatter(world: &World, wave: &mut Wave) {
         path.throughput = throughput;
         let (p, ng) = (shading.points.p.get(lane), shading.points.ng.get(lane));
         let origin = world.accel.leave(p, ng, wi, path.segment.hit.primitive);
+        if let Some(facing) = facings.get_mut(i as usize).filter(|_| matches!(event, event::DIFFUSE | event::GLOSSY)) {
+            *facing = lanes.facing.get(lane);
+        }
         turn(path, origin, wi, event, pdf);
         next.push(i);
     }

@@ -7,7 +7,7 @@ use crate::render::world::World;
 
 /// Shades the batch and adds the emission that was not known before.
 pub fn shade(world: &World, wave: &mut Wave) {
-    let Wave { paths, lanes, shading, dropped, .. } = wave;
+    let Wave { paths, facings, lanes, shading, dropped, .. } = wave;
     let (group, plan) = world.material(lanes.material);
     shading.resize(lanes.paths.len());
     let segments = lanes.paths.iter().map(|&i| &paths[i as usize].segment);
@@ -21,7 +21,8 @@ pub fn shade(world: &World, wave: &mut Wave) {
         }
         // Constant emission was added when the hits were sorted.
         if plan.emits && world.emission_of(path.segment.hit.primitive).is_none() {
-            found_on_surface(world, path, shading.emission().get(lane), lanes.material, dropped);
+            let (facing, radiance) = (facings.get(i as usize), shading.emission().get(lane));
+            found_on_surface(world, path, facing, radiance, lanes.material, dropped);
         }
     }
 }
