@@ -29,7 +29,11 @@ pub fn rounded(a: f64, places: i32) -> Option<u128> {
     let mantissa = (bits & ((1 << 52) - 1)) | (1 << 52);
     // The numbers are floats widened to doubles, so most of the mantissa's bits are zero.
     let spare = mantissa.trailing_zeros();
-    let (whole, power) = (u128::from(mantissa >> spare), exponent - 1075 + spare as i32);
+    let (whole, power) = (mantissa >> spare, exponent - 1075 + spare as i32);
+    if let Some(short) = rounded_short(whole, power, places) {
+        return Some(u128::from(short));
+    }
+    let whole = u128::from(whole);
     let up = POWERS.get(places.max(0) as usize)?;
     let down = *POWERS.get(places.min(0).unsigned_abs() as usize)?;
     let mut above = whole.checked_mul(*up)?;
@@ -47,6 +51,17 @@ pub fn rounded(a: f64, places: i32) -> Option<u128> {
     let (quotient, half) = (above >> shift, 1 << (shift - 1));
     let rest = above - (quotient << shift);
     Some(quotient + u128::from(rest > half || (rest == half && quotient & 1 == 1)))
+}
+
+/// The same where 64 bits do, as for most numbers that are printed.
+fn rounded_short(whole: u64, power: i32, places: i32) -> Option<u64> {
+    if !(0..=12).contains(&places) || !(-63..=-1).contains(&power) || whole >= 1 << 24 {
+        return None;
+    }
+    let (above, shift) = (whole * POWERS[places as usize] as u64, power.unsigned_abs());
+    let (quotient, half) = (above >> shift, 1 << (shift - 1));
+    let rest = above - (quotient << shift);
+    Some(quotient + u64::from(rest > half || (rest == half && quotient & 1 == 1)))
 }
 
 fn divided(above: u128, below: u128) -> u128 {
@@ -91,9 +106,14 @@ impl Digits {
         }
         out.exponent = exponent;
         let mut left = u64::try_from(value).ok()?;
-        for digit in out.digits[..count].iter_mut().rev() {
-            *digit = b'0' + (left % 10) as u8;
-            left /= 10;
+        let mut pairs = out.digits[..count].rchunks_exact_mut(2);
+        for pair in &mut pairs {
+            let two = (left % 100) as u8;
+            (pair[0], pair[1]) = (b'0' + two / 10, b'0' + two % 10);
+            left /= 100;
+        }
+        if let [first] = pairs.into_remainder() {
+            *first = b'0' + left as u8;
         }
         Some(out)
     }

@@ -38,6 +38,7 @@
 pub mod accel;
 mod block;
 mod camera;
+mod crossing;
 mod emission;
 mod error;
 mod explain;
@@ -62,6 +63,7 @@ mod settings;
 mod shading;
 mod sky;
 mod stages;
+mod through;
 mod tile;
 mod trace;
 mod wave;
