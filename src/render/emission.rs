@@ -1,5 +1,6 @@
 //! Emission that paths find and light that they sample: what each counts for, so that together they count once.
 
+use super::crossing::Crossing;
 use super::path::{Dropped, Path};
 use super::settings::LightStrategy;
 use super::sky::SkyTable;
@@ -8,11 +9,13 @@ use crate::lanes;
 use crate::math::columns::Column3;
 use glam::Vec3;
 
-/// Adds to a path the radiance of the surface that its ray has hit; `facing` is the path's of [`super::wave::Wave::facings`].
+/// Adds to a path the radiance of the surface that its ray has hit; `crossing` is what it remembers of clear surfaces, `facing` from
+/// where light reached the point that it has left, see [`super::wave::Wave::facings`].
 #[inline]
 pub fn found_on_surface(
     world: &World,
     path: &mut Path,
+    crossing: Option<&Crossing>,
     facing: Option<&Vec3>,
     radiance: Vec3,
     material: usize,
@@ -22,7 +25,13 @@ pub fn found_on_surface(
         return;
     }
     let facing = facing.copied().unwrap_or_default();
-    let other = || world.lights.pdf(&path.segment, path.from, facing);
+    let other = || match crossing {
+        None => world.lights.pdf(&path.segment, path.from, facing),
+        Some(crossing) => {
+            let (segment, from) = crossing.whole(path);
+            world.lights.pdf(&segment, from, facing)
+        }
+    };
     let weight = weight_of_found(world.settings.lights, path.pdf_solid_angle, other);
     path.gather(path.throughput * radiance * weight, material, dropped);
 }

@@ -40,6 +40,7 @@ mod block;
 mod camera;
 #[cfg(test)]
 mod counts;
+mod crossing;
 mod emission;
 mod error;
 mod explain;
@@ -64,6 +65,7 @@ mod settings;
 mod shading;
 mod sky;
 mod stages;
+mod through;
 mod tile;
 mod trace;
 mod wave;

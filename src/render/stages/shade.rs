@@ -7,7 +7,7 @@ use crate::render::world::World;
 
 /// Shades the batch and adds the emission that was not known before.
 pub fn shade(world: &World, wave: &mut Wave) {
-    let Wave { paths, facings, lanes, shading, dropped, .. } = wave;
+    let Wave { paths, crossings, facings, lanes, shading, dropped, .. } = wave;
     let (group, plan) = world.material(lanes.material);
     shading.resize(lanes.paths.len());
     let segments = lanes.paths.iter().map(|&i| &paths[i as usize].segment);
@@ -17,12 +17,13 @@ pub fn shade(world: &World, wave: &mut Wave) {
         let path = &mut paths[i as usize];
         if path.clear {
             // Of what clear surfaces have let through, the hole lets the background show.
-            path.alpha = 1.0 - path.through() * shading.holdout()[lane].clamp(0.0, 1.0);
+            path.alpha = 1.0 - path.through().min(1.0) * shading.holdout()[lane].clamp(0.0, 1.0);
         }
         // Constant emission was added when the hits were sorted.
         if plan.emits && world.emission_of(path.segment.hit.primitive).is_none() {
-            let (facing, radiance) = (facings.get(i as usize), shading.emission().get(lane));
-            found_on_surface(world, path, facing, radiance, lanes.material, dropped);
+            let (crossing, facing) = (crossings.get(i as usize), facings.get(i as usize));
+            let radiance = shading.emission().get(lane);
+            found_on_surface(world, path, crossing, facing, radiance, lanes.material, dropped);
         }
     }
 }
