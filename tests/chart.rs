@@ -105,7 +105,7 @@ fn errors_agree_with_known_figures() {
     assert!((0.10..0.16).contains(&published), "{published}");
     assert!(error_of("visibility", "exact, fitted") < 1e-4);
     assert!((0.5..0.7).contains(&error_of("visibility", "Ashikhmin")));
-    let fit = error_of("albedo", "polynomial 7 x 5");
+    let fit = error_of("albedo", "polynomial 9 x 7");
     assert!((2e-4..9e-4).contains(&fit), "{fit}");
     let rational = error_of("albedo", "MaterialX");
     assert!((0.04..0.12).contains(&rational), "{rational}");
@@ -179,9 +179,9 @@ fn picks_follow_the_tolerance() {
         (1.0, Shadowing::Ashikhmin),
         (0.5, Shadowing::Exact),
         (1e-2, Shadowing::Exact),
-        (6e-3, Shadowing::Exact),
-        // Below the largest error of the fit, 0.57 %.
-        (5.3e-3, Shadowing::Series),
+        // The fit errs by 0.57 % from r = 0.06 up and by 0.67 % at 0.01; a tenth is added.
+        (7.5e-3, Shadowing::Exact),
+        (6.6e-3, Shadowing::Series),
         (1e-4, Shadowing::Series),
     ];
     for (tolerance, term) in terms {

@@ -1,6 +1,6 @@
 //! Ashikhmin's velvet: an inverted Gaussian of micronormals, the model that sheen is compared with.
 
-use super::sheen::albedo::{AlbedoCurve, MIN_FITTED_ROUGHNESS};
+use super::sheen::albedo::{AlbedoCurve, MIN_VELVET_WIDTH};
 use super::sheen::charlie::sin2_half;
 use super::{Eval, Params, Scatter, View, select};
 use crate::math::elementary::exp;
@@ -40,7 +40,7 @@ impl Scatter for Velvet {
 
     #[inline(always)]
     fn prepare([m, ..]: Params) -> Self {
-        let m = m.clamp(MIN_FITTED_ROUGHNESS, 1.0);
+        let m = m.clamp(MIN_VELVET_WIDTH, 1.0);
         let norm = FRAC_1_PI / (1.0 + 4.0 * m * m);
         Velvet { slope: -1.0 / (m * m), norm, albedo: AlbedoCurve::velvet(m) }
     }

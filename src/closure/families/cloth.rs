@@ -13,13 +13,13 @@ use crate::closure::settings::{Layering, Shadowing, SheenSampling};
 use crate::lang::closures::{Claim, ParamSpec, TopAlbedo, Waiver};
 
 const ROUGHNESS: ParamSpec =
-    ParamSpec::about("Charlie roughness r, clamped to 0.01..1").tried(&[0.25, 0.06, 0.15, 0.5, 1.0]);
+    ParamSpec::about("Charlie roughness r, clamped to 0.01..1").tried(&[0.25, 0.01, 0.06, 0.15, 0.5, 1.0]);
 const LAYERING: ParamSpec = ParamSpec::about("how the base is scaled: \"min\" (default), \"view\" or \"kelemen\"");
 const SHADOWING: ParamSpec = ParamSpec::about(
     "shadowing term: \"exact\" (default), \"published\" (fit of the paper), \"ashikhmin\" (real-time visibility) or \"series\" (exact to 4e-6)",
 );
 const SAMPLING: ParamSpec = ParamSpec::about(
-    "how directions are drawn: \"ltc\" (default, a transformed cosine), \"uniform\", \"cosine\" or \"normals\" (half vector)",
+    "how directions are drawn: \"ltc\" (default, transformed cosines), \"uniform\", \"cosine\" or \"normals\" (half vector)",
 );
 const SOFTENING: ParamSpec =
     ParamSpec::about("1 (default) softens the terminator by eq. 4, 0 does not").tried(&[1.0, 0.0]);
@@ -47,7 +47,7 @@ const PUBLISHED_GAINS: Waiver = Waiver {
 const ASHIKHMIN_GAINS: Waiver = Waiver {
     claim: Claim::Energy,
     only: Some(("shadowing", "ashikhmin")),
-    why: "the real-time visibility does not belong to D: albedo up to 1.7 below r = 0.21",
+    why: "the real-time visibility does not belong to D: albedo up to 4.0 below r = 0.21",
 };
 const FIBERS: Waiver = Waiver {
     claim: Claim::Reciprocity,
