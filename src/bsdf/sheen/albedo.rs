@@ -20,7 +20,8 @@ pub use super::fits::SHORT;
 use super::charlie::{MIN_ROUGHNESS, clamp_roughness};
 use super::fits::{
     ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_LONG, ALBEDO_EXACT_SOFT, ALBEDO_EXACT_SOFT_LONG, ALBEDO_PUBLISHED,
-    ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET, CURVE, CURVE_COLUMNS, CurveFit, SHORT_COLUMNS, ShortFit,
+    ALBEDO_PUBLISHED_SOFT, ALBEDO_VELVET, ALBEDO_VELVET_2000, CURVE, CURVE_COLUMNS, CurveFit, SHORT_COLUMNS, ShortFit,
+    VELVET_COLUMNS, VelvetFit,
 };
 use super::term::Shadowing;
 use crate::bsdf::power::log2;
@@ -75,7 +76,8 @@ impl FromStr for SheenAlbedo {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let found = Self::ALL.iter().find(|(name, _)| *name == text);
-        let unknown = || format!("unknown albedo evaluator \"{text}\"; choose \"short\", \"fit\" or \"long\"");
+        let unknown =
+            || format!("unknown albedo evaluator \"{text}\"; choose \"short\", \"fit\" or \"long\"");
         found.map(|&(_, method)| method).ok_or_else(unknown)
     }
 }
@@ -121,13 +123,24 @@ impl AlbedoCurve {
         }
     }
 
-    /// The curve of Ashikhmin's velvet of one width; error 2.1e-4.
+    /// The curve of Ashikhmin's velvet of 2007 of one width; error 2.1e-4.
     #[inline(always)]
     pub fn velvet(m: f32) -> Self {
+        Self::of_width(&ALBEDO_VELVET, m)
+    }
+
+    /// The curve of Ashikhmin's velvet of 2000 of one width; error 2.7e-3.
+    #[inline(always)]
+    pub fn velvet_2000(sigma: f32) -> Self {
+        Self::of_width(&ALBEDO_VELVET_2000, sigma)
+    }
+
+    #[inline(always)]
+    fn of_width(fit: &VelvetFit, m: f32) -> Self {
         let s = 1.0 - log2(m.clamp(MIN_VELVET_WIDTH, 1.0)) * (2.0 / LOG2_MIN_VELVET);
         let mut c = [0.0; CURVE];
         for i in 0..CURVE {
-            c[i] = chebyshev::<9>(&ALBEDO_VELVET[i], s);
+            c[i] = chebyshev::<VELVET_COLUMNS>(&fit[i], s);
         }
         AlbedoCurve { c }
     }

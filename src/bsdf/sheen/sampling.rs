@@ -126,7 +126,13 @@ impl Proposal {
     /// The sampler of a roughness, by default.
     #[inline(always)]
     pub fn new(term: Shadowing, soft: bool, r: f32) -> Self {
-        let ProposalFit { log_width, tilt, log_across, flat, lean, cube } = proposal_fit(term, soft);
+        Self::of(proposal_fit(term, soft), r)
+    }
+
+    /// The sampler of a roughness by a fit.
+    #[inline(always)]
+    pub fn of(fit: &ProposalFit, r: f32) -> Self {
+        let ProposalFit { log_width, tilt, log_across, flat, lean, cube } = fit;
         let y = log2(r) * (1.0 / LOG2_LEAST);
         let line = |c: &[f32; 2]| c[0] + y * c[1];
         Proposal {
