@@ -4,6 +4,7 @@
 //! recursion, no stack, and a node that several parents share is visited once. What reaches a node under the same layer
 //! is summed there, so `Ci = Ci + Ci` fifty times is one lobe and not 2^50.
 
+use super::darkening::{Coated, darken};
 use super::flat::{Flat, Lobe};
 use super::frames::Seen;
 use super::layering::{Layer, Top};
@@ -46,6 +47,7 @@ pub struct Sweep {
     weights: Weights,
     tops: Tops,
     emitters: Vec<Emitter>,
+    coated: Vec<Coated>,
     ready: Vec<(u32, Leaf)>,
 }
 
@@ -57,6 +59,7 @@ impl Sweep {
         self.entries.clear();
         self.weights.clear();
         self.emitters.clear();
+        self.coated.clear();
     }
 
     /// Sends a weight to a node; false when there are too many.
@@ -98,6 +101,7 @@ pub fn flatten(flat: &mut Flat, sweep: &mut Sweep, library: &Library, tree: &Tre
     }
     flat.layers.prepare(&flat.models, &flat.coats, &flat.ones);
     emit(flat, sweep);
+    darken(flat, &sweep.weights, &sweep.coated);
     pick(flat);
 }
 
@@ -203,6 +207,9 @@ impl Pass<'_> {
             let coat = leaf.inner.unwrap_or(layers.coat(layer));
             layers.list.push(Layer { parent: layer, depth, rule: cover.rule, top, coat, coverage: cover.coverage });
             let inner = layers.list.len() as u32 - 1;
+            if matches!(top, Top::Boundary) {
+                self.sweep.coated.push(Coated { layer: inner, weight });
+            }
             let weight = if cover.gate == Column::ONES {
                 weight
             } else {
