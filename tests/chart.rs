@@ -199,7 +199,7 @@ fn picked(tolerance: f64) -> Choice {
 #[test]
 fn picks_follow_the_tolerance() {
     let terms = [
-        (1.0, Shadowing::Ashikhmin),
+        (1.5, Shadowing::Ashikhmin),
         (0.5, Shadowing::Exact),
         (1e-2, Shadowing::Exact),
         // The fit errs by 0.57 % from r = 0.06 up and by 0.67 % at 0.01; a tenth is added.

@@ -57,7 +57,7 @@ pub struct RenderArgs {
     /// Shadowing term of sheen: exact, published, ashikhmin or series [default: exact]
     #[arg(long)]
     shadowing: Option<Shadowing>,
-    /// How the albedo of sheen is found under an exact shadowing term: short, fit or long [default: fit]
+    /// How the albedo of sheen is found under an exact shadowing term: short, fit, long or table [default: fit]
     #[arg(long)]
     albedo: Option<SheenAlbedo>,
     /// Take the cheapest methods whose measured error is at most this; --shadowing and --albedo win over it

@@ -21,18 +21,20 @@ use std::fmt;
 const SHADOWING_COSTS: [(Shadowing, f64); 4] =
     [(Shadowing::Ashikhmin, 7.4), (Shadowing::Exact, 9.5), (Shadowing::Series, 11.2), (Shadowing::Published, 17.0)];
 
-/// Cost of an albedo, ns a direction, as the figure `albedo` of `velour chart` has it on the same machine.
-const ALBEDO_COSTS: [(SheenAlbedo, f64); 3] =
-    [(SheenAlbedo::Short, 1.3), (SheenAlbedo::Fit, 1.9), (SheenAlbedo::Long, 4.3)];
+/// Cost of an albedo, ns a direction, as the figure `albedo` of `velour chart` has it on the same machine; a table is read number
+/// by number, where the polynomials are summed for many lanes at once.
+const ALBEDO_COSTS: [(SheenAlbedo, f64); 4] =
+    [(SheenAlbedo::Short, 1.5), (SheenAlbedo::Fit, 2.3), (SheenAlbedo::Long, 4.3), (SheenAlbedo::Table, 8.8)];
 
-/// Roughnesses at which errors are looked for: all that a sheen can have, even in their logarithm.
-const ROUGHNESSES: [f64; 9] = [0.01, 0.017_783, 0.031_623, 0.056_234, 0.1, 0.177_83, 0.316_23, 0.562_34, 1.0];
+/// Roughnesses at which errors are looked for, all over what a sheen can have and between the rows of the table.
+const ROUGHNESSES: [f64; 10] = [0.01, 0.0109, 0.0165, 0.0285, 0.052, 0.094, 0.17, 0.32, 0.6, 1.0];
 
 /// Cosines at which errors of Lambda are looked for: on fewer the fit seems better than it is.
 const LAMBDA_COSINES: usize = 61;
 
-/// Cosines at which errors of the albedo are looked for.
+/// Cosines at which errors of the albedo are looked for, and one more in the first cells of the table, where it errs most.
 const ALBEDO_COSINES: usize = 16;
+const FIRST_CELL: f64 = 2.3e-4;
 
 /// What an error found on these grids is multiplied with.
 const MARGIN: f64 = 1.1;
@@ -168,16 +170,17 @@ fn shadowing_error(term: Shadowing) -> f64 {
 }
 
 /// The largest error of the albedo by each of [`ALBEDO_COSTS`], for the term that is rendered with.
-fn albedo_errors(term: Shadowing, soft: bool) -> [f64; 3] {
+fn albedo_errors(term: Shadowing, soft: bool) -> [f64; 4] {
     let model = match term {
         Shadowing::Exact => Model::ExactFit,
         Shadowing::Series => Model::Exact,
         Shadowing::Published => Model::Published,
         Shadowing::Ashikhmin => Model::Ashikhmin,
     };
-    let cosines = cosines(ALBEDO_COSINES);
+    let mut cosines = cosines(ALBEDO_COSINES);
+    cosines.push(FIRST_CELL);
     let truth = albedos(model, soft, &ROUGHNESSES, &cosines, 32);
-    let mut worst = [0.0f64; 3];
+    let mut worst = [0.0f64; 4];
     for (row, r) in truth.iter().zip(ROUGHNESSES) {
         for (worst, (method, _)) in worst.iter_mut().zip(ALBEDO_COSTS) {
             let exact = AlbedoCurve::exact(method, soft, r as f32);

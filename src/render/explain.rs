@@ -118,6 +118,7 @@ fn albedos(group: &Group, method: SheenAlbedo) -> Vec<&'static str> {
                 SheenAlbedo::Short => "short polynomial of the sheen's albedo (a roughness below 0.01 counts as 0.01)",
                 SheenAlbedo::Fit => "polynomial of the sheen's albedo (a roughness below 0.01 counts as 0.01)",
                 SheenAlbedo::Long => "long polynomial of the sheen's albedo (a roughness below 0.01 counts as 0.01)",
+                SheenAlbedo::Table => "table of the sheen's albedo (a roughness below 0.01 counts as 0.01)",
             },
             TopAlbedo::Facets => FACET_TABLE,
             TopAlbedo::Boundary => "Fresnel's term of the coat",

@@ -418,3 +418,19 @@ fn the_velvet_of_2000_has_a_dark_spot_toward_the_light() {
     let new = Velvet::prepare(params([0.3])).eval(wo, wo).f_cos;
     assert!(old < 1e-12 && new > 0.05, "{old} {new}");
 }
+
+#[test]
+fn the_albedo_table_errs_as_documented() {
+    for (soft, bound) in [(true, 2.9e-3), (false, 1.4e-3)] {
+        let mut worst = 0.0f64;
+        for r in [0.01, 0.0108, 0.015, 0.03, 0.07, 0.2, 0.55, 1.0] {
+            let curve = AlbedoCurve::exact(SheenAlbedo::Table, soft, r as f32);
+            for c in [1e-4, 2e-4, 6e-4, 1.7e-3, 7e-3, 0.03, 0.11, 0.31, 0.62, 0.87, 1.0] {
+                let expected = reference::albedo(Model::Exact, soft, c, r, 32);
+                worst = worst.max((f64::from(curve.by_method(SheenAlbedo::Table, c as f32)) - expected).abs());
+            }
+        }
+        hold(worst, bound, "albedo table");
+        assert!(worst > 1e-4, "a table of this size cannot be as exact as the polynomials: {worst}");
+    }
+}

@@ -17,6 +17,7 @@
 
 pub use super::fits::SHORT;
 
+use super::albedo_table::look_up;
 use super::charlie::{MIN_ROUGHNESS, clamp_roughness};
 use super::fits::{
     ALBEDO_ASHIKHMIN, ALBEDO_EXACT, ALBEDO_EXACT_LONG, ALBEDO_EXACT_SOFT, ALBEDO_EXACT_SOFT_LONG, ALBEDO_PUBLISHED,
@@ -56,6 +57,8 @@ pub enum SheenAlbedo {
     Fit,
     /// A polynomial of 13 x 13 terms that errs by up to 8.3e-5 (softened) or 2.0e-5 (not), from r = 0.06 up 1.8e-5 and 3.6e-6.
     Long,
+    /// A table of 33 x 25 numbers, read by linear interpolation: errs by up to 2.9e-3 (softened, at r = 0.01), else 1.4e-3.
+    Table,
 }
 
 /// [`SheenAlbedo::Short`] as a constant parameter.
@@ -64,11 +67,17 @@ pub const SHORT_METHOD: u8 = 0;
 pub const FIT_METHOD: u8 = 1;
 /// [`SheenAlbedo::Long`] as a constant parameter.
 pub const LONG_METHOD: u8 = 2;
+/// [`SheenAlbedo::Table`] as a constant parameter.
+pub const TABLE_METHOD: u8 = 3;
 
 impl SheenAlbedo {
     /// All variants with the word that selects them.
-    pub const ALL: [(&'static str, SheenAlbedo); 3] =
-        [("short", SheenAlbedo::Short), ("fit", SheenAlbedo::Fit), ("long", SheenAlbedo::Long)];
+    pub const ALL: [(&'static str, SheenAlbedo); 4] = [
+        ("short", SheenAlbedo::Short),
+        ("fit", SheenAlbedo::Fit),
+        ("long", SheenAlbedo::Long),
+        ("table", SheenAlbedo::Table),
+    ];
 }
 
 impl FromStr for SheenAlbedo {
@@ -77,7 +86,7 @@ impl FromStr for SheenAlbedo {
     fn from_str(text: &str) -> Result<Self, String> {
         let found = Self::ALL.iter().find(|(name, _)| *name == text);
         let unknown =
-            || format!("unknown albedo evaluator \"{text}\"; choose \"short\", \"fit\" or \"long\"");
+            || format!("unknown albedo evaluator \"{text}\"; choose \"short\", \"fit\", \"long\" or \"table\"");
         found.map(|&(_, method)| method).ok_or_else(unknown)
     }
 }
@@ -120,6 +129,7 @@ impl AlbedoCurve {
             (SheenAlbedo::Fit, _) => Self::new(Shadowing::Exact, soft, r),
             (SheenAlbedo::Short, true) => Self::shortest(&ALBEDO_EXACT_SOFT, r),
             (SheenAlbedo::Short, false) => Self::shortest(&ALBEDO_EXACT, r),
+            (SheenAlbedo::Table, _) => Self::row(soft, r),
         }
     }
 
@@ -175,6 +185,14 @@ impl AlbedoCurve {
         AlbedoCurve { c }
     }
 
+    /// Where the table is read, in place of coefficients.
+    #[inline(always)]
+    fn row(soft: bool, r: f32) -> Self {
+        let mut c = [0.0; CURVE];
+        (c[0], c[1]) = (roughness_axis(r), f32::from(u8::from(soft)));
+        AlbedoCurve { c }
+    }
+
     /// The coefficients of a curve of an exact term, to keep them.
     #[inline(always)]
     pub fn terms(&self) -> [f32; SHORT] {
@@ -204,6 +222,7 @@ impl AlbedoCurve {
         match METHOD {
             SHORT_METHOD => self.sum::<SHORTEST>(t),
             FIT_METHOD => self.sum::<SHORT>(t),
+            TABLE_METHOD => look_up(self.c[1] > 0.5, cosine_axis(t), self.c[0]),
             // A step of Newton brings the root to the last digits, which this curve is worth.
             _ => self.sum::<CURVE>(t - (t - cos / (t * t)) * (1.0 / 3.0)),
         }
@@ -215,14 +234,20 @@ impl AlbedoCurve {
             SheenAlbedo::Short => self.by::<SHORT_METHOD>(cos),
             SheenAlbedo::Fit => self.by::<FIT_METHOD>(cos),
             SheenAlbedo::Long => self.by::<LONG_METHOD>(cos),
+            SheenAlbedo::Table => self.by::<TABLE_METHOD>(cos),
         }
     }
 
     #[inline(always)]
     fn sum<const TERMS: usize>(&self, t: f32) -> f32 {
-        let x = (t - MIN_T) * (2.0 / (1.0 - MIN_T)) - 1.0;
-        chebyshev::<TERMS>(&self.c, x).clamp(0.0, 1.0)
+        chebyshev::<TERMS>(&self.c, cosine_axis(t)).clamp(0.0, 1.0)
     }
+}
+
+/// The axis of the fits, -1..1, for a cube root.
+#[inline(always)]
+fn cosine_axis(t: f32) -> f32 {
+    (t - MIN_T) * (2.0 / (1.0 - MIN_T)) - 1.0
 }
 
 /// The cube root in single precision, for cosines.

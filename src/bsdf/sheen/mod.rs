@@ -16,6 +16,7 @@
 //! below it they cancel, and roughness goes down to 0.01, so they are no default.
 
 pub mod albedo;
+pub mod albedo_table;
 pub mod charlie;
 pub mod fibers;
 pub mod fits;
