@@ -45,6 +45,8 @@ pub struct Coat {
     depth: Option<Column3>,
     /// Where diffuse lobes are brightened by what the boundary throws back.
     darkens: Vec<bool>,
+    /// The part of diffuse light inside that leaves, where that is so.
+    escape: Vec<f32>,
     /// The viewer inside, world.
     pub wo: Column3,
     /// The light of the last evaluation inside, world.
@@ -59,8 +61,8 @@ pub struct Coat {
     pub tint_i: Column3,
     /// Solid angle inside over outside of the light's direction, all coats around included.
     pub density: Vec<f32>,
-    /// What f cos of diffuse lobes is multiplied with: as `density`, or where the coat does not darken the cosine outside over
-    /// inside of the light's direction; all coats around included.
+    /// What f cos of diffuse lobes is multiplied with: `density` over what escapes, whose part is in their weight, or where the
+    /// coat does not darken the cosine outside over inside of the light's direction; all coats around included.
     pub spread: Vec<f32>,
     /// True when it, or a coat around it, absorbs.
     pub colored: bool,
@@ -125,7 +127,7 @@ impl Coats {
         for column in [&mut coat.wo, &mut coat.wi, &mut coat.tint_o, &mut coat.tint_i] {
             column.resize(n);
         }
-        for column in [&mut coat.pass_o, &mut coat.pass_i, &mut coat.density, &mut coat.spread] {
+        for column in [&mut coat.escape, &mut coat.pass_o, &mut coat.pass_i, &mut coat.density, &mut coat.spread] {
             column.resize(n, 1.0);
         }
         let from = Crossing { normal: Triples::of(&frames[frame as usize].normal), eta: &coat.eta };
@@ -144,6 +146,13 @@ impl Coats {
         self.list.len() as u32 - 1
     }
 
+    /// Says what part of diffuse light leaves a coat from inside, above 0.
+    pub fn set_escape(&mut self, coat: u32, parts: &[f32]) {
+        if let Some(coat) = self.list.get_mut(coat as usize) {
+            coat.escape.copy_from_slice(parts);
+        }
+    }
+
     /// Brings the light's directions into every coat.
     pub fn light(&mut self, frames: &[FrameColumns], wi: &Column3) {
         for index in 0..self.list.len() {
@@ -156,6 +165,7 @@ impl Coats {
                 alpha,
                 depth,
                 darkens,
+                escape,
                 wi: inside,
                 tint_i,
                 pass_i,
@@ -170,7 +180,7 @@ impl Coats {
             enter_lanes(from, above, &mut inside.x, &mut inside.y, &mut inside.z, pass_i, density, spread);
             pass_facets(from, above, alpha.as_deref(), pass_i);
             for lane in (0..wi.len()).filter(|&lane| darkens[lane]) {
-                spread[lane] = density[lane];
+                spread[lane] = density[lane] / escape[lane];
             }
             if let Some(outer) = outer {
                 for lane in 0..wi.len() {

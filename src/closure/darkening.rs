@@ -36,7 +36,8 @@ pub struct Coated {
     pub weight: Weight,
 }
 
-/// Multiplies the diffuse lobes under coats by what comes back to them.
+/// Multiplies the diffuse lobes under coats by the part of their light that leaves in the end, (1 - F) / (1 - rho F), which is at
+/// most 1 and right to pick lobes by. The coats divide f by 1 - F, so that it is the formula's.
 pub fn darken(flat: &mut Flat, weights: &Weights, coated: &[Coated]) {
     if !coated.iter().any(|over| coat_of(flat, over).is_some_and(Coat::darkens_any)) {
         return;
@@ -44,6 +45,7 @@ pub fn darken(flat: &mut Flat, weights: &Weights, coated: &[Coated]) {
     let n = flat.lanes;
     let innermost = innermost(&flat.layers, coated);
     let mut factors = base_albedos(flat, weights, coated, &innermost);
+    let mut escapes = vec![1.0; n * coated.len()];
     for index in (0..coated.len()).rev() {
         let Some(coat) = coat_of(flat, &coated[index]) else { continue };
         let (before, here) = factors.split_at_mut(3 * n * index);
@@ -51,17 +53,21 @@ pub fn darken(flat: &mut Flat, weights: &Weights, coated: &[Coated]) {
         let mut known = None;
         for lane in 0..n {
             let returned = returned(coat, lane, &mut known);
+            let escape = (1.0 - returned.clear).max(1e-6);
+            escapes[index * n + lane] = escape;
             for channel in 0..3 {
                 let rho = here[channel * n + lane].clamp(0.0, 1.0);
-                let factor = 1.0 / (1.0 - rho * returned.absorbed[channel]).max(1e-6);
-                here[channel * n + lane] = if coat.darkens(lane) { factor } else { 1.0 };
+                let leaves = escape / (1.0 - rho * returned.absorbed[channel]).max(escape);
+                here[channel * n + lane] = if coat.darkens(lane) { leaves } else { 1.0 };
                 if let Some(outer) = around {
                     let share = relative(weights, [coated[index], coated[outer]], channel, lane, n);
-                    let leaves = returned.passes * rho * (1.0 - returned.clear) * factor;
-                    before[(3 * outer + channel) * n + lane] += share * leaves;
+                    before[(3 * outer + channel) * n + lane] += share * returned.passes * rho * leaves;
                 }
             }
         }
+    }
+    for (index, over) in coated.iter().enumerate() {
+        flat.coats.set_escape(flat.layers.coat(over.layer), &escapes[index * n..(index + 1) * n]);
     }
     // Outer coats first: what is in a coat in a coat is brightened by both.
     for index in 0..coated.len() {
