@@ -16,6 +16,7 @@ pub struct Translucent;
 
 impl Scatter for Lambert {
     const PARAMS: usize = 0;
+    const FLAT: bool = true;
     const SPREAD: Spread = Spread::Even;
 
     #[inline(always)]
@@ -42,6 +43,7 @@ impl Scatter for Lambert {
 
 impl Scatter for Translucent {
     const PARAMS: usize = 0;
+    const FLAT: bool = true;
     const SPREAD: Spread = Spread::Even;
     const SIDE: Side = Side::Other;
 

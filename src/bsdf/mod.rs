@@ -95,6 +95,8 @@ pub trait Scatter: Copy + 'static {
     const PARAMS: usize;
     /// Where light leaves the surface.
     const SIDE: Side = Side::Same;
+    /// True when f is one number for all pairs of directions.
+    const FLAT: bool = false;
     /// How wide it scatters.
     const SPREAD: Spread = Spread::Broad;
     /// True when [`Scatter::top_albedo`] is more exact than [`Scatter::albedo`], and dearer.
@@ -118,6 +120,16 @@ pub trait Scatter: Copy + 'static {
     fn view(&self, _wo: Vec3) -> View {
         View::default()
     }
+    /// The number of [`Scatter::view`] that is multiplied by [`Scatter::adjustment`] for choices that ask for it.
+    const ADJUSTED: Option<usize> = None;
+    /// Does a choice ask for an adjustment?
+    fn adjusts(_choice: Choice) -> bool {
+        false
+    }
+    /// What depends on the viewer alone and takes too long, or too many branches, for the lane loops.
+    fn adjustment(&self, _wo: Vec3) -> f32 {
+        1.0
+    }
     /// f |cos_i| and density of one direction; zero where the model scatters nothing, never NaN.
     fn eval_from(&self, wo: Vec3, view: View, wi: Vec3) -> Eval;
     /// What f |cos_i| is multiplied with to give its color, >= 0.
@@ -127,7 +139,7 @@ pub trait Scatter: Copy + 'static {
     }
     /// A direction for three numbers in [0, 1); it may lie where `eval` gives zero, and is zero when there is none.
     fn sample_from(&self, wo: Vec3, view: View, xi: Vec3) -> Vec3;
-    /// [`Scatter::eval_from`] without a view at hand.
+    /// [`Scatter::eval_from`] without a view at hand, for a choice that asks for no adjustment.
     #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
         self.eval_from(wo, self.view(wo), wi)

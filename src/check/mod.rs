@@ -11,6 +11,7 @@
 mod call;
 mod candidate;
 pub mod codes;
+pub mod compared;
 mod context;
 mod convert;
 mod declare;

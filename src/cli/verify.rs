@@ -50,8 +50,7 @@ pub struct VerifyArgs {
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let subjects = subjects(args)?;
     let subjects: Vec<&dyn Subject> = subjects.iter().map(AsRef::as_ref).collect();
-    let effort = if args.quick { Effort::quick() } else { Effort::full() };
-    let effort = Effort { seed: args.seed, ..effort };
+    let effort = args.effort();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads).build();
     let pool = pool.map_err(|error| Failure::Usage(format!("error: no threads: {error}")))?;
     // indicatif draws nothing when standard error is no terminal.
@@ -109,6 +108,13 @@ fn subjects(args: &VerifyArgs) -> Result<Vec<Box<dyn Subject>>, Failure> {
     if wrong { Err(Failure::Wrong(String::new())) } else { Ok(out) }
 }
 
+impl VerifyArgs {
+    fn effort(&self) -> Effort {
+        let effort = if self.quick { Effort::quick() } else { Effort::full() };
+        Effort { seed: self.seed, ..effort }
+    }
+}
+
 /// Compiles a file, with all it has to say; nothing when it is wrong.
 fn shader(compiler: &Compiler, name: &str) -> Result<Option<Shader>, Failure> {
     let bytes =
@@ -128,7 +134,7 @@ fn shader_subject(
     settings: Settings,
 ) -> Result<Box<dyn Subject>, Failure> {
     let given: Vec<(String, String)> = args.param.chunks(2).map(|pair| (pair[0].clone(), pair[1].clone())).collect();
-    let subject = ShaderSubject::new(name, shader, &given, settings);
+    let subject = ShaderSubject::new(name, shader, &given, settings, &args.effort());
     Ok(Box::new(subject.map_err(|error| Failure::Wrong(error.to_string()))?))
 }
 

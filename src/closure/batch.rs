@@ -209,7 +209,7 @@ lanes! {
 
 /// The largest scale that Kelemen's rule may come to: it divides by what a layer lets through on the mean, once for each of any
 /// number of layers.
-const MOST_SCALE: f32 = 1e3;
+pub const MOST_SCALE: f32 = 1e3;
 
 /// What [`layer_lanes`] reads.
 #[derive(Clone, Copy)]
@@ -233,7 +233,8 @@ lanes! {
         let (top_i, coverage, alpha_o) = (&from.top_i[..n], &from.coverage[..n], &from.alpha_o[..n]);
         let (inverse_mean, parent) = (&from.inverse_mean[..n], &from.parent[..n]);
         match rule {
-            Layering::Min => {
+            // What is not diffuse has the smaller of both sides under the rule without loss too.
+            Layering::Min | Layering::Lossless => {
                 for i in 0..n {
                     let alpha_i = (1.0 - coverage[i] * top_i[i]).max(0.0);
                     out[i] = parent[i] * alpha_i.min(alpha_o[i]);

@@ -82,6 +82,13 @@ impl ClosureDef {
         self
     }
 
+    /// The same closure, which may let light pass straight on ([`LeafMaker::straight`]): shadow rays then go through its surfaces
+    /// with the color that it has there. Without this they end there, and light is found behind by scattering alone.
+    pub fn passing(mut self) -> Self {
+        self.spec.passes = true;
+        self
+    }
+
     /// The same closure, without lobes.
     pub fn inert(mut self) -> Self {
         self.spec.scatters = false;

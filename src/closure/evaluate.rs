@@ -1,9 +1,12 @@
 //! Evaluation: f cos and density of one direction a lane, summed over the lobes.
 
 use super::batch::{LobeColumns, side_lanes};
-use super::flat::Flat;
+use super::flat::{Flat, Lobe};
+use super::lobe_kind::Way;
 use super::source::Triples;
+use super::store::NONE;
 use crate::math::columns::Column3;
+use glam::Vec3;
 
 /// f cos and density of one direction a lane.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,6 +41,11 @@ pub fn evaluate(flat: &mut Flat, wi: &Column3, out: &mut Evaluation) {
             scale: flat.layers.scale_of(lobe.layer, &flat.ones),
             pick: &flat.picks[n * index..n * (index + 1)],
         };
+        if flat.layers.scales_by_lobe(lobe.layer) {
+            let weight = &flat.weights[3 * n * index..];
+            flat.layers.scale_lobe(&flat.models, lobe.layer, model.kind, weight, &mut flat.scaled);
+            (columns.weight, columns.scale) = (Triples::packed(&flat.scaled, n), &flat.ones);
+        }
         if let Some(coat) = flat.coats.get(flat.layers.coat(lobe.layer)) {
             coat.carry(&columns, model.kind.is_even(), &mut flat.within);
             columns.weight = Triples::packed(&flat.within, n);
@@ -45,5 +53,28 @@ pub fn evaluate(flat: &mut Flat, wi: &Column3, out: &mut Evaluation) {
         }
         let sums = [&mut *out.f_cos.x, &mut *out.f_cos.y, &mut *out.f_cos.z];
         (loops.evaluate)(flat.models.numbers(model), model.choice, columns, sums, &mut out.pdf);
+    }
+}
+
+/// See [`super::Lobes::straight`].
+pub fn straight(flat: &mut Flat, scratch: &mut Evaluation, out: &mut Column3) {
+    let n = flat.lanes;
+    out.resize(n);
+    for column in [&mut out.x, &mut out.y, &mut out.z] {
+        column.fill(0.0);
+    }
+    let passes = |flat: &Flat, lobe: Lobe| matches!(flat.model(lobe).kind.way(), Way::Straight);
+    if flat.lobes.iter().any(|&lobe| lobe.layer != NONE && passes(flat, lobe)) {
+        // What layers and coats take depends on where light comes from.
+        let mut behind = Column3::zeros(n);
+        (0..n).for_each(|lane| behind.set(lane, -flat.wo.get(lane)));
+        evaluate(flat, &behind, scratch);
+    }
+    for (index, &lobe) in flat.lobes.iter().enumerate().filter(|(_, lobe)| passes(flat, **lobe)) {
+        let coat = flat.coats.get(flat.layers.coat(lobe.layer));
+        for lane in 0..n {
+            let tint = coat.map_or(Vec3::ONE, |coat| coat.tint(lane));
+            out.set(lane, out.get(lane) + flat.scaled_weight(index, lane) * tint);
+        }
     }
 }

@@ -8,6 +8,7 @@ use super::settings::Settings;
 use super::store::Store;
 use super::tree::NodeId;
 use crate::math::columns::Column3;
+use glam::Vec3;
 
 /// How many dropped lanes are listed.
 const MOST_DROPPED: usize = 256;
@@ -30,6 +31,8 @@ pub struct Lobe {
     pub model: u32,
     /// The innermost layer over it, or [`super::store::NONE`].
     pub layer: u32,
+    /// Sampled by the lobe before it, whose probability to be picked is its own as well.
+    pub paired: bool,
 }
 
 /// The lobes of a batch.
@@ -49,7 +52,7 @@ pub struct Flat {
     pub lobes: Vec<Lobe>,
     /// Three columns a lobe.
     pub weights: Store,
-    /// One column a lobe: the probability to pick it.
+    /// One column a lobe: the probability to pick it, or the lobe that samples it.
     pub picks: Vec<f32>,
     /// The last lobe of a lane that can be picked, or [`super::store::NONE`].
     pub last: Vec<u32>,
@@ -57,10 +60,14 @@ pub struct Flat {
     pub wo: Column3,
     /// Geometric normals, world.
     pub ng: Column3,
+    /// Not 0 in lanes that are seen from inside; empty when none is.
+    pub backfacing: Vec<i32>,
     /// Whether viewer and light lie on one side, as of the last evaluation; scratch memory before it.
     pub side: Vec<f32>,
     /// Weight, scale and probability of a lobe under a coat, five columns.
     pub within: Vec<f32>,
+    /// Weight of a lobe with the scale of its lossless layers, three columns.
+    pub scaled: Vec<f32>,
     /// 1 in every lane.
     pub ones: Vec<f32>,
     /// Radiance toward the viewer.
@@ -75,8 +82,12 @@ pub struct Flat {
 
 impl Flat {
     /// Begins a batch.
-    pub fn clear(&mut self, lanes: usize, wo: &Column3, ng: &Column3) {
+    pub fn clear(&mut self, lanes: usize, wo: &Column3, ng: &Column3, backfacing: &[i32]) {
         self.lanes = lanes;
+        self.backfacing.clear();
+        if backfacing.iter().any(|&behind| behind != 0) {
+            self.backfacing.extend_from_slice(backfacing);
+        }
         self.wo.clone_from(wo);
         self.ng.clone_from(ng);
         self.ones.resize(lanes, 1.0);
@@ -92,6 +103,17 @@ impl Flat {
     /// The model of a lobe.
     pub fn model(&self, lobe: Lobe) -> &LobeModel {
         &self.models.list[lobe.model as usize]
+    }
+
+    /// The weight of a lobe in a lane, with the scale of its layers for the last evaluated direction.
+    pub fn scaled_weight(&self, lobe: usize, lane: usize) -> Vec3 {
+        let (n, layer) = (self.lanes, self.lobes[lobe].layer);
+        let at = 3 * n * lobe + lane;
+        let weight = Vec3::new(self.weights[at], self.weights[at + n], self.weights[at + 2 * n]);
+        match self.layers.scales_by_lobe(layer) {
+            true => weight * self.layers.smaller_part(&self.models, layer, lane),
+            false => weight * self.layers.scale_of(layer, &self.ones)[lane],
+        }
     }
 
     /// Notes that a closure was left out of a lane.

@@ -15,7 +15,6 @@ use super::store::NONE;
 use super::tops::Tops;
 use super::tree::{Ints, Node, NodeId, Tree};
 use super::weights::{Operand, Weight, Weights, multiply, normalise_lanes, share_lanes, usable, usable_and_some};
-use crate::math::columns::Column3;
 use glam::Vec3;
 
 /// More lobes or pending weights than this are dropped and reported: a shared base under many different layers could
@@ -84,9 +83,8 @@ impl Sweep {
     }
 }
 
-/// Flattens a tree as seen from `wo` at points of geometric normal `ng`.
-pub fn flatten(flat: &mut Flat, sweep: &mut Sweep, library: &Library, tree: &Tree, wo: &Column3, ng: &Column3) {
-    flat.clear(tree.lanes, wo, ng);
+/// Flattens a tree into a `flat` that was cleared for its batch.
+pub fn flatten(flat: &mut Flat, sweep: &mut Sweep, library: &Library, tree: &Tree) {
     sweep.clear(tree.nodes.len());
     let mut pass = Pass { flat, sweep, library, tree };
     if let Some(root) = tree.root {
@@ -100,6 +98,7 @@ pub fn flatten(flat: &mut Flat, sweep: &mut Sweep, library: &Library, tree: &Tre
         sweep.tops.build_steps(&mut flat.layers, &mut flat.models, tree, root);
     }
     flat.layers.prepare(&flat.models, &flat.coats, &flat.ones);
+    flat.layers.prepare_lossless(&flat.models);
     emit(flat, sweep);
     darken(flat, &sweep.weights, &sweep.coated);
     pick(flat);
@@ -161,8 +160,8 @@ impl Pass<'_> {
     /// Makes a leaf's lobes, and what lies under it when it is a coat.
     fn make_ready(&mut self, index: u32, coat: u32) -> Leaf {
         let (tree, settings) = (self.tree, self.flat.settings);
-        let Flat { models, coats, wo, ng, .. } = &mut *self.flat;
-        let seen = Seen { wo: coats.get(coat).map_or(&*wo, |c| &c.wo), ng, coat };
+        let Flat { models, coats, wo, ng, backfacing, .. } = &mut *self.flat;
+        let seen = Seen { wo: coats.get(coat).map_or(&*wo, |c| &c.wo), ng, coat, backfacing };
         let node = &tree.nodes[index as usize];
         let mut leaf = self.library.leaf(tree, node, |closure| LeafMaker::new(models, tree, settings, seen, closure));
         if let Some(coating) = leaf.coating.take() {
@@ -182,8 +181,17 @@ impl Pass<'_> {
             self.sweep.emitters.push(Emitter { weight, layer, hole: leaf.hole, node: name.1 });
         }
         fits &= self.sweep.send(n, leaf.top, layer, weight);
+        let mut paired_with = None;
         for part in &leaf.parts {
+            // A half whose partner was left out samples for itself.
+            let before = self.flat.lobes.len();
+            let partner =
+                paired_with.is_some_and(|model| self.flat.lobes.last().is_some_and(|lobe| lobe.model == model));
             fits &= self.add_lobe(part, leaf, layer, weight, name);
+            if let Some(lobe) = self.flat.lobes.get_mut(before) {
+                lobe.paired = part.paired && partner;
+            }
+            paired_with = Some(part.model);
         }
         if leaf.base.is_none() {
             return fits;
@@ -205,7 +213,8 @@ impl Pass<'_> {
             }
             let depth = layers.depth(layer) + 1;
             let coat = leaf.inner.unwrap_or(layers.coat(layer));
-            layers.list.push(Layer { parent: layer, depth, rule: cover.rule, top, coat, coverage: cover.coverage });
+            let (rule, coverage, tints) = (cover.rule, cover.coverage, cover.tints);
+            layers.list.push(Layer { parent: layer, depth, rule, top, coat, coverage, tints });
             let inner = layers.list.len() as u32 - 1;
             if matches!(top, Top::Boundary) {
                 self.sweep.coated.push(Coated { layer: inner, weight });
@@ -238,7 +247,7 @@ impl Pass<'_> {
         }
         if made.gate == Column::ONES && usable_and_some(&flat.weights[start..]) {
             // The common case: every weight is a number and the lobe exists in every lane.
-            flat.lobes.push(Lobe { model, layer });
+            flat.lobes.push(Lobe { model, layer, paired: false });
             return true;
         }
         let mut any = false;
@@ -260,7 +269,7 @@ impl Pass<'_> {
             any |= !(broken || absent) && w != [0.0; 3];
         }
         if any {
-            flat.lobes.push(Lobe { model, layer });
+            flat.lobes.push(Lobe { model, layer, paired: false });
         } else {
             flat.weights.truncate(start);
         }
@@ -316,13 +325,23 @@ fn pick(flat: &mut Flat) {
         }
         let (x, rest) = weight.split_at(n);
         let (y, z) = rest.split_at(n);
-        share_lanes([x, y, z], through, out, &mut total);
+        // An albedo is an estimate, for which a lobe that may scatter is never excluded; that of one direction is known.
+        let least = if flat.models.list[lobe.model as usize].kind.is_delta() { 0.0 } else { 1e-3 };
+        share_lanes([x, y, z], through, least, out, &mut total);
+        if lobe.paired {
+            let (before, here) = flat.picks.split_at_mut(index * n);
+            before[(index - 1) * n..].iter_mut().zip(here).for_each(|(pick, more)| *pick += *more);
+        }
     }
     for value in &mut total {
         // The inverse of a smaller sum would be infinite.
         *value = if *value >= f32::MIN_POSITIVE { 1.0 / *value } else { 0.0 };
     }
     for index in 0..flat.lobes.len() {
+        if flat.lobes[index].paired {
+            flat.picks.copy_within((index - 1) * n..index * n, index * n);
+            continue;
+        }
         let picks = &mut flat.picks[index * n..(index + 1) * n];
         normalise_lanes(index as u32, &total, picks, &mut flat.last);
     }

@@ -8,18 +8,22 @@
 //! turns black under the geometric test, and instead of rejected, which leaves black spots on bump maps.
 
 use super::batch::localise_lanes;
-use super::normals::{NormalColumns, normal_lanes, tangent_lanes};
+use super::normals::{NormalColumns, any_low, normal_lanes, raised, tangent_lanes};
 use super::source::Triples;
+use super::store::NONE;
 use super::tree::{Floats, Tree};
 use crate::math::columns::Column3;
 use crate::math::frame::Frame;
 use glam::Vec3;
 
+/// What a frame is made from: normal, tangent, coat, and whether its normals are raised to mirror the viewer.
+type Key = ([Floats; 3], Option<[Floats; 3]>, u32, bool);
+
 /// A shading frame a lane.
 #[derive(Debug, Default)]
 pub struct FrameColumns {
-    key: Option<([Floats; 3], Option<[Floats; 3]>, u32)>,
-    /// The coat its directions run in, or [`super::store::NONE`].
+    key: Option<Key>,
+    /// The coat its directions run in, or [`NONE`].
     pub coat: u32,
     /// Tangents.
     pub tangent: Column3,
@@ -66,8 +70,10 @@ pub struct Seen<'a> {
     pub wo: &'a Column3,
     /// Geometric normals.
     pub ng: &'a Column3,
-    /// The coat over the surface, or [`super::store::NONE`].
+    /// The coat over the surface, or [`NONE`].
     pub coat: u32,
+    /// Not 0 in lanes whose normals were turned because the viewer is inside; empty when there is none.
+    pub backfacing: &'a [i32],
 }
 
 /// How many of the newest frames are compared with a new one; a scene rarely has more normals than this.
@@ -97,10 +103,31 @@ impl Frames {
         &mut self.list[..self.used]
     }
 
+    /// The frame of a normal and tangent for lobes about the mirror direction: where that lies below the surface the normal is
+    /// raised, see [`raised`]. Where none does, the frame that others have.
+    ///
+    /// Decision (2026-11-29): normals are raised for lobes about the mirror direction alone, as Cycles does, because light that a
+    /// bent normal mirrors into the surface is lost and leaves black spots (a bumpy mirror in a white furnace: .904); a diffuse
+    /// lobe loses little there, and would only lose the shape of its bumps.
+    pub fn push_mirror(&mut self, tree: &Tree, normal: [Floats; 3], tangent: Option<[Floats; 3]>, seen: &Seen) -> u32 {
+        let plain = self.push(tree, normal, tangent, seen, false);
+        let frame = &self.list[plain as usize];
+        // In a coat directions are bent, and the surface is where they leave it.
+        let low = seen.coat == NONE && any_low(Triples::of(&frame.normal), Triples::of(seen.wo), Triples::of(seen.ng));
+        if low { self.push(tree, normal, tangent, seen, true) } else { plain }
+    }
+
     /// The frame of a normal and tangent; one that was made for the same columns is used again.
-    pub fn push(&mut self, tree: &Tree, normal: [Floats; 3], tangent: Option<[Floats; 3]>, seen: &Seen) -> u32 {
+    pub fn push(
+        &mut self,
+        tree: &Tree,
+        normal: [Floats; 3],
+        tangent: Option<[Floats; 3]>,
+        seen: &Seen,
+        raise: bool,
+    ) -> u32 {
         let newest = self.used.saturating_sub(FRAMES_COMPARED);
-        let key = Some((normal, tangent, seen.coat));
+        let key = Some((normal, tangent, seen.coat, raise));
         if let Some(found) = (newest..self.used).find(|&i| self.list[i].key == key) {
             return found as u32;
         }
@@ -128,17 +155,21 @@ impl Frames {
             y: column_of(tree, normal[1], &self.given.y),
             z: column_of(tree, normal[2], &self.given.z),
         };
-        fill(frame, tree, given, tangent, seen);
+        fill(frame, tree, given, tangent, seen, raise);
         index as u32
     }
 }
 
 /// Fills a frame whose columns are as long as the batch.
-fn fill(frame: &mut FrameColumns, tree: &Tree, given: Triples, tangent: Option<[Floats; 3]>, seen: &Seen) {
+fn fill(frame: &mut FrameColumns, tree: &Tree, given: Triples, tangent: Option<[Floats; 3]>, seen: &Seen, raise: bool) {
     let from = NormalColumns { given, wo: Triples::of(seen.wo), ng: Triples::of(seen.ng) };
     let normals = &mut frame.normal;
     normal_lanes(from, &mut normals.x, &mut normals.y, &mut normals.z, &mut frame.inside, &mut frame.broken);
     (frame.any_inside, frame.any_broken) = (any(&frame.inside), any(&frame.broken));
+    for lane in (0..tree.lanes).filter(|_| raise) {
+        let normal = raised(frame.normal.get(lane), seen.wo.get(lane), seen.ng.get(lane));
+        frame.normal.set(lane, normal);
+    }
     let (t, b) = (&mut frame.tangent, &mut frame.bitangent);
     tangent_lanes(Triples::of(&frame.normal), &mut t.x, &mut t.y, &mut t.z, &mut b.x, &mut b.y, &mut b.z);
     if let Some(u) = tangent {

@@ -76,6 +76,15 @@ pub struct Layer {
     pub coat: u32,
     /// How much of the base its top covers.
     pub coverage: Column,
+    /// How much of it in each color, for [`Layering::Lossless`].
+    pub tints: [Column; 3],
+}
+
+impl Layer {
+    /// Does it scale lobe by lobe and color by color?
+    pub fn lossless(&self) -> bool {
+        self.rule == Layering::Lossless && !matches!(self.top, Top::Boundary)
+    }
 }
 
 /// All layers of a batch.
@@ -93,12 +102,18 @@ pub struct Layers {
     /// Where [`Layers::curves`] has the albedo curves of each layer's sheen, or [`NONE`].
     curves_at: Vec<u32>,
     curves: Store<Curves>,
+    /// Is any layer lossless? Then the albedos of tops toward viewer and light are kept, a column a layer.
+    pub(super) by_lobe: bool,
+    pub(super) top_o: Vec<f32>,
+    pub(super) top_i: Vec<f32>,
+    /// The mean of what a lossless layer and those around it let through, three columns a layer.
+    pub(super) passed: Vec<f32>,
     alpha_o: Vec<f32>,
     through: Vec<f32>,
     inverse_mean: Vec<f32>,
-    scales: Vec<f32>,
-    values: Vec<f32>,
-    scratch: Vec<f32>,
+    pub(super) scales: Vec<f32>,
+    pub(super) values: Vec<f32>,
+    pub(super) scratch: Vec<f32>,
 }
 
 impl Layers {
@@ -161,6 +176,10 @@ impl Layers {
         self.seen_at.resize(models.list.len(), NONE);
         self.curves.clear();
         self.curves_at.clear();
+        self.by_lobe = self.list.iter().any(Layer::lossless);
+        for store in [&mut self.top_o, &mut self.top_i].into_iter().filter(|_| self.by_lobe) {
+            store.resize(n * self.list.len(), 0.0);
+        }
         self.run_steps(models, Toward::View);
         for index in 0..self.list.len() {
             let layer = self.list[index];
@@ -176,6 +195,9 @@ impl Layers {
                     let kept = kept(&self.curves, self.curves_at[index]);
                     top_albedo(&layer, kept, models, Toward::View, &self.values, &mut self.scratch);
                     alpha_lanes(models.column(layer.coverage), &self.scratch, alpha);
+                    if self.by_lobe {
+                        self.top_o[index * n..(index + 1) * n].copy_from_slice(&self.scratch);
+                    }
                     if let Top::Lobe(model) = layer.top {
                         self.seen_at[model as usize] = self.seen.len() as u32;
                         self.seen.extend_from_slice(&self.scratch);
@@ -255,6 +277,9 @@ impl Layers {
                 let kept = kept(&self.curves, self.curves_at[index]);
                 top_albedo(layer, kept, models, Toward::Light, &self.values, &mut self.scratch);
             }
+            if self.by_lobe {
+                self.top_i[index * n..(index + 1) * n].copy_from_slice(&self.scratch);
+            }
             let (before, here) = self.scales.split_at_mut(index * n);
             let columns = LayerColumns {
                 top_i: &self.scratch,
@@ -268,7 +293,7 @@ impl Layers {
     }
 
     /// Computes the albedo of every tree that lies on top of something.
-    fn run_steps(&mut self, models: &LobeModels, toward: Toward) {
+    pub(super) fn run_steps(&mut self, models: &LobeModels, toward: Toward) {
         let n = models.lanes;
         self.values.resize(n * self.steps.len(), 0.0);
         for (index, step) in self.steps.iter().enumerate() {
@@ -345,7 +370,7 @@ fn kept(curves: &[Curves], at: u32) -> Option<&[Curves]> {
 }
 
 /// The albedo of what a layer consists of, without its coverage; `kept` are the curves of its sheen, if they were.
-fn top_albedo(
+pub(super) fn top_albedo(
     layer: &Layer,
     kept: Option<&[Curves]>,
     models: &LobeModels,

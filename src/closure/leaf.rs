@@ -25,6 +25,8 @@ pub(super) struct Part {
     pub coverage: Column,
     /// A color in place of the leaf's.
     pub tint: Option<[Floats; 3]>,
+    /// Is it sampled by the part before it?
+    pub paired: bool,
     /// Where the part exists, whatever its parameters are.
     gate: Column,
 }
@@ -36,6 +38,8 @@ pub(super) struct Cover {
     pub model: Option<u32>,
     /// How much of the base it covers.
     pub coverage: Column,
+    /// How much of it in each color, for the rule that asks.
+    pub tints: [Column; 3],
     /// The rule of scaling.
     pub rule: Layering,
     /// The lanes it applies to.
@@ -93,18 +97,34 @@ pub struct LobeRequest<'a> {
     pub frame: FrameId,
     /// The parameters of its model, in the model's order; at most [`crate::bsdf::MAX_PARAMS`].
     pub params: &'a [Floats],
-    /// Which of them is an index of refraction, to be inverted where the viewer is inside.
+    /// Which of them is an index of refraction, to be inverted where the viewer is behind the shading normal.
     pub eta: Option<usize>,
+    /// Is it an index of the surface's inside over its outside? Then it is inverted too where normals were turned to a viewer
+    /// who is inside (`backfacing()`), which other closures leave to the shader.
+    pub two_sided: bool,
     /// Where it exists.
     pub gate: Gate,
     /// A color in place of the leaf's.
     pub tint: Option<Color>,
+    /// Is it the other half of the lobe added before it, in the same lanes? Then that one's sampling finds the directions of both,
+    /// the density of each being a part of one whole.
+    pub paired: bool,
 }
 
 impl<'a> LobeRequest<'a> {
     /// A lobe in all lanes.
     pub fn new(kind: LobeKind, frame: FrameId, params: &'a [Floats]) -> Self {
-        LobeRequest { kind, choice: Choice::default(), frame, params, eta: None, gate: Gate::ALL, tint: None }
+        LobeRequest {
+            kind,
+            choice: Choice::default(),
+            frame,
+            params,
+            eta: None,
+            two_sided: false,
+            gate: Gate::ALL,
+            tint: None,
+            paired: false,
+        }
     }
 }
 
@@ -176,6 +196,12 @@ impl<'a> LeafMaker<'a> {
         FrameId(self.models.frame(self.tree, normal.0, tangent.map(|u| u.0), &self.seen))
     }
 
+    /// The same for lobes about the mirror direction: a normal that mirrors the viewer into the surface is turned as little as
+    /// keeps the mirror direction above it.
+    pub fn mirror_frame(&mut self, normal: Normal, tangent: Option<Vector>) -> FrameId {
+        FrameId(self.models.mirror_frame(self.tree, normal.0, tangent.map(|u| u.0), &self.seen))
+    }
+
     /// The frame of the geometric normal.
     pub fn geometric_frame(&mut self) -> FrameId {
         self.frame(Normal([Floats::Uniform(0.0); 3]), None)
@@ -198,13 +224,14 @@ impl<'a> LeafMaker<'a> {
 
     /// Adds a lobe.
     pub fn add(&mut self, lobe: LobeRequest) -> PartId {
-        let LobeRequest { kind, choice, frame, params, eta, gate, tint } = lobe;
+        let LobeRequest { kind, choice, frame, params, eta, two_sided, gate, tint, paired } = lobe;
         let closure = self.closure;
-        let request = Request { kind, choice, closure, frame: frame.0, params, eta, gate: gate.0 };
+        let backfacing = if two_sided { self.seen.backfacing } else { &[] };
+        let request = Request { kind, choice, closure, frame: frame.0, params, eta, backfacing, gate: gate.0 };
         let model = self.models.push(self.tree, request);
         let tint = tint.map(|color| color.0);
         let coverage = tint.map_or(Column::ONES, |color| self.largest(color));
-        self.leaf.parts.push(Part { model, coverage, tint, gate: gate.0 });
+        self.leaf.parts.push(Part { model, coverage, tint, paired, gate: gate.0 });
         PartId(self.leaf.parts.len() - 1)
     }
 
@@ -263,20 +290,48 @@ impl<'a> LeafMaker<'a> {
             }
         };
         self.leaf.parts[part].coverage = coverage;
-        self.leaf.covers.push(Cover { model: Some(model), coverage, rule, gate });
+        let tints = if rule == Layering::Lossless { self.tints(color, coverage) } else { [coverage; 3] };
+        self.leaf.covers.push(Cover { model: Some(model), coverage, tints, rule, gate });
+    }
+
+    /// A column for each component of a color, no larger than that of the largest one.
+    fn tints(&mut self, color: Color, largest: Column) -> [Column; 3] {
+        let [x, y, z] = color.0;
+        if x == y && y == z {
+            return [largest; 3];
+        }
+        let (most, tree) = (self.models.column(largest).to_vec(), self.tree);
+        color.0.map(|c| {
+            self.models.push_column(|lane| {
+                let value = tree.float(c, lane);
+                if value.is_finite() { value.clamp(0.0, most[lane].max(0.0)) } else { most[lane] }
+            })
+        })
     }
 
     /// Covers what the leaf nests by another closure, which scatters as well.
     pub fn cover_by(&mut self, top: Nested, rule: Layering, gate: Gate) {
         self.leaf.top = top.0;
-        self.leaf.covers.push(Cover { model: None, coverage: Column::ONES, rule, gate: gate.0 });
+        self.leaf.covers.push(Cover {
+            model: None,
+            coverage: Column::ONES,
+            tints: [Column::ONES; 3],
+            rule,
+            gate: gate.0,
+        });
     }
 
     /// Lays a coat over what the leaf nests.
     pub(super) fn coat(&mut self, coating: Coating) {
         self.leaf.coating = Some(coating);
         let rule = self.settings.layering;
-        self.leaf.covers.push(Cover { model: None, coverage: Column::ONES, rule, gate: Column::ONES });
+        self.leaf.covers.push(Cover {
+            model: None,
+            coverage: Column::ONES,
+            tints: [Column::ONES; 3],
+            rule,
+            gate: Column::ONES,
+        });
     }
 
     /// The index of a frame among those of the batch.

@@ -10,7 +10,7 @@ use super::batch::{
     LobeColumns, albedo_lanes, average_lanes, evaluate_lanes, sample_lanes, top_albedo_lanes, view_lanes,
 };
 use super::event;
-use super::source::{Each, Numbers, Same, Triples, Views};
+use super::source::{Each, Numbers, Same, Source, Triples, Views};
 use crate::bsdf::specular::{Single, Specular};
 use crate::bsdf::{Choice, Params, Scatter, Side, Spread};
 use glam::Vec3;
@@ -24,6 +24,7 @@ struct Table {
     name: fn() -> &'static str,
     event: u8,
     even: bool,
+    flat: bool,
     way: Way,
 }
 
@@ -88,8 +89,13 @@ pub(super) struct SampleColumns<'a> {
 
 impl LobeKind {
     /// Light that passes straight on, whatever the normal.
-    pub const STRAIGHT: LobeKind =
-        LobeKind(&Table { name: || "straight on", event: event::STRAIGHT, even: false, way: Way::Straight });
+    pub const STRAIGHT: LobeKind = LobeKind(&Table {
+        name: || "straight on",
+        event: event::STRAIGHT,
+        even: false,
+        flat: false,
+        way: Way::Straight,
+    });
 
     /// The kind of a model.
     pub const fn of<M: Scatter>() -> LobeKind {
@@ -110,6 +116,11 @@ impl LobeKind {
     /// in the end. Sheens, and the light under a highlight, prefer directions, and take the rule that is safe for all.
     pub(super) fn is_even(self) -> bool {
         self.0.even
+    }
+
+    /// True for Lambertian lobes.
+    pub(super) fn is_flat(self) -> bool {
+        self.0.flat
     }
 
     /// What sampling it counts as, see [`event`].
@@ -145,6 +156,7 @@ impl<M: Scatter> OfModel<M> {
             Spread::Narrow => event::GLOSSY,
         },
         even: matches!(M::SPREAD, Spread::Even),
+        flat: M::FLAT,
         way: Way::Many(&Loops {
             params: M::PARAMS,
             views: M::VIEW,
@@ -172,6 +184,7 @@ impl<S: Single> OfSingle<S> {
             Side::Other | Side::Both => event::DELTA_REFRACT,
         },
         even: false,
+        flat: false,
         way: Way::One(&Meeting { meet: S::meet, side: S::SIDE }),
     };
 }
@@ -193,7 +206,16 @@ macro_rules! with_source {
 }
 
 fn view<M: Scatter>(numbers: Numbers, choice: Choice, wo: Triples, out: &mut [f32]) {
-    with_source!(numbers, choice, |source| view_lanes::<M, _>(source, wo, out));
+    with_source!(numbers, choice, |source| {
+        view_lanes::<M, _>(source, wo, out);
+        if let (Some(column), true) = (M::ADJUSTED, M::adjusts(choice)) {
+            let n = wo.x.len();
+            for (i, value) in out[column * n..(column + 1) * n].iter_mut().enumerate() {
+                let model: M = source.at(i);
+                *value *= model.adjustment(wo.at(i));
+            }
+        }
+    });
 }
 
 fn evaluate<M: Scatter>(

@@ -63,6 +63,8 @@ pub struct Request<'a> {
     pub params: &'a [Floats],
     /// Which of them is an index of refraction.
     pub eta: Option<usize>,
+    /// Where the index is inverted although the frame faces the viewer: in lanes that are not 0. Empty means nowhere.
+    pub backfacing: &'a [i32],
     /// Where it exists.
     pub gate: Column,
 }
@@ -101,7 +103,12 @@ impl LobeModels {
 
     /// The frame of a normal and tangent.
     pub fn frame(&mut self, tree: &Tree, normal: [Floats; 3], tangent: Option<[Floats; 3]>, seen: &Seen) -> u32 {
-        self.frames.push(tree, normal, tangent, seen)
+        self.frames.push(tree, normal, tangent, seen, false)
+    }
+
+    /// The frame of a normal and tangent for lobes about the mirror direction.
+    pub fn mirror_frame(&mut self, tree: &Tree, normal: [Floats; 3], tangent: Option<[Floats; 3]>, seen: &Seen) -> u32 {
+        self.frames.push_mirror(tree, normal, tangent, seen)
     }
 
     /// Brings light directions into every frame in use.
@@ -168,11 +175,11 @@ impl LobeModels {
     /// Adds a model and gives its index. Its parameters come from the tree; the one at `eta` is inverted
     /// where the viewer is inside. Lanes with a parameter or normal that is not a number get a gate that is not a number.
     pub fn push(&mut self, tree: &Tree, request: Request) -> u32 {
-        let Request { kind, choice, closure, frame, params, eta, gate } = request;
+        let Request { kind, choice, closure, frame, params, eta, backfacing, gate } = request;
         // What a model cannot read is not kept.
         let params = &params[..params.len().min(MAX_PARAMS)];
         let (inside, broken) = match self.frames.list().get(frame as usize) {
-            Some(f) => (f.any_inside && eta.is_some(), f.any_broken),
+            Some(f) => (eta.is_some() && (f.any_inside || !backfacing.is_empty()), f.any_broken),
             None => (false, false),
         };
         let mut constant = [0.0; MAX_PARAMS];
@@ -193,7 +200,7 @@ impl LobeModels {
             let mut offsets = [if missing { self.push_constant(0.0).0 } else { 0 }; MAX_PARAMS];
             for k in 0..params.len() {
                 let flips = inside && eta == Some(k);
-                offsets[k] = self.push_param(tree, params[k], flips.then_some(frame), finite);
+                offsets[k] = self.push_param(tree, params[k], flips.then_some((frame, backfacing)), finite);
             }
             model.params = Values::Columns(offsets);
         }
@@ -219,8 +226,9 @@ impl LobeModels {
         Column(at)
     }
 
-    /// A column of a parameter, 0 where it is no number; inverted in the lanes that are inside the frame `flip`.
-    fn push_param(&mut self, tree: &Tree, param: Floats, flip: Option<u32>, finite: bool) -> u32 {
+    /// A column of a parameter, 0 where it is no number; inverted in the lanes that are inside the frame of `flip`, or that the
+    /// list beside it says.
+    fn push_param(&mut self, tree: &Tree, param: Floats, flip: Option<(u32, &[i32])>, finite: bool) -> u32 {
         let at = self.data.len();
         match (param, flip) {
             (Floats::Varying(from), None) if finite => {
@@ -233,7 +241,10 @@ impl LobeModels {
                 for lane in 0..self.lanes {
                     let value = tree.float(param, lane);
                     let value = if value.is_finite() { value } else { 0.0 };
-                    let inside = flip.is_some_and(|frame| self.frames()[frame as usize].inside[lane] > 0.0);
+                    let inside = flip.is_some_and(|(frame, backfacing)| {
+                        self.frames()[frame as usize].inside[lane] > 0.0
+                            || backfacing.get(lane).is_some_and(|b| *b != 0)
+                    });
                     self.data.push(if inside && value > 0.0 { 1.0 / value } else { value });
                 }
             }

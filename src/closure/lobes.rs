@@ -1,6 +1,6 @@
 //! The lobes of a batch: what a closure tree scatters, ready to be evaluated and sampled for all lanes at once.
 
-use super::evaluate::{Evaluation, evaluate};
+use super::evaluate::{Evaluation, evaluate, straight};
 use super::flat::{Dropped, Flat};
 use super::flatten::{Sweep, flatten};
 use super::layering::{Toward, covering_albedo};
@@ -24,7 +24,7 @@ pub struct LobeInfo {
     pub depth: u32,
     /// What the layers let through on the viewer's side, 0..1.
     pub through: f32,
-    /// The probability that sampling picks it.
+    /// The probability that sampling picks it; 0 for the second half of a rough boundary, which the first samples.
     pub pick: f32,
 }
 
@@ -48,7 +48,14 @@ impl Lobes {
     ///
     /// Linear in nodes, lobes and layers, without recursion.
     pub fn flatten(&mut self, library: &Library, tree: &Tree, wo: &Column3, ng: &Column3) {
-        flatten(&mut self.flat, &mut self.sweep, library, tree, wo, ng);
+        self.flatten_sides(library, tree, wo, ng, &[]);
+    }
+
+    /// Flattens as [`Lobes::flatten`] does, at points whose normals were turned to the viewer: `backfacing` is not 0 in the lanes
+    /// that were seen from inside, where closures with two sides invert their index of refraction. Empty means nowhere.
+    pub fn flatten_sides(&mut self, library: &Library, tree: &Tree, wo: &Column3, ng: &Column3, backfacing: &[i32]) {
+        self.flat.clear(tree.lanes, wo, ng, backfacing);
+        flatten(&mut self.flat, &mut self.sweep, library, tree);
     }
 
     /// The directions to the viewer, world, as [`Lobes::flatten`] got them.
@@ -96,6 +103,12 @@ impl Lobes {
         self.sampler.sample(&mut self.flat, xi, out);
     }
 
+    /// The part of the light from behind that goes straight on to the viewer, a color a lane, with what layers and coats over
+    /// it take: the weight of [`super::event::STRAIGHT`] in the mean of all samples.
+    pub fn straight(&mut self, out: &mut Column3) {
+        straight(&mut self.flat, &mut self.sampler.evaluation, out);
+    }
+
     /// The lobes of one lane, outer ones first; those without weight in the lane are left out.
     pub fn describe(&self, lane: usize) -> Vec<LobeInfo> {
         let (flat, n) = (&self.flat, self.flat.lanes);
@@ -114,7 +127,7 @@ impl Lobes {
                 albedo: albedo[lane],
                 depth: flat.layers.depth(lobe.layer),
                 through: if lobe.layer == NONE { 1.0 } else { flat.layers.through_of(lobe.layer)[lane] },
-                pick: flat.picks[index * n + lane],
+                pick: if lobe.paired { 0.0 } else { flat.picks[index * n + lane] },
             });
         }
         infos

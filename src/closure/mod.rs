@@ -28,6 +28,7 @@ mod library;
 mod lobe_kind;
 mod lobe_models;
 pub mod lobes;
+mod lossless;
 mod normals;
 pub mod print;
 pub mod reading;

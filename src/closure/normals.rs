@@ -114,6 +114,60 @@ fn choose(condition: bool, yes: Vec3, no: Vec3) -> Vec3 {
     Vec3::new(select(condition, yes.x, no.x), select(condition, yes.y, no.y), select(condition, yes.z, no.z))
 }
 
+/// The least cosine to the geometric normal that a mirror direction may have, and the most of the viewer's that it must have.
+const LOW: f32 = 0.01;
+const LOW_PART: f32 = 0.9;
+
+/// How high above the surface a mirror direction has to be for a viewer of this cosine.
+#[inline(always)]
+fn least_height(viewer: f32) -> f32 {
+    (LOW_PART * viewer).min(LOW)
+}
+
+/// The cosine to the geometric normal of the direction that a normal mirrors the viewer to.
+#[inline(always)]
+fn mirror_height(n: Vec3, wo: Vec3, ng: Vec3) -> f32 {
+    2.0 * n.dot(wo) * n.dot(ng) - wo.dot(ng)
+}
+
+/// Does any normal mirror a viewer in front of the surface to below it?
+pub fn any_low(normal: Triples<'_>, wo: Triples<'_>, ng: Triples<'_>) -> bool {
+    let low = |i: usize| {
+        let (n, o, g) = (normal.at(i), wo.at(i), ng.at(i));
+        let viewer = o.dot(g);
+        viewer > 0.0 && mirror_height(n, o, g) < least_height(viewer)
+    };
+    (0..normal.x.len()).any(low)
+}
+
+/// A normal turned toward the geometric one, no further than that the mirror direction of the viewer stays above the surface.
+///
+/// In the plane of both normals let the viewer have the coordinates (u, v), v along the geometric normal; a normal at the angle t
+/// from that mirrors it to the height u sin 2t + v cos 2t = a cos(2t - p), with a the length of (u, v) and p its angle. Heights
+/// of at least h are those of 2t <= p + acos(h / a), which bounds t; what the viewer has across the plane changes nothing.
+#[inline(always)]
+pub fn raised(n: Vec3, wo: Vec3, ng: Vec3) -> Vec3 {
+    let v = wo.dot(ng);
+    let height = least_height(v);
+    if !(v > 0.0 && mirror_height(n, wo, ng) < height) {
+        return n;
+    }
+    let across = n - ng * n.dot(ng);
+    let length2 = across.dot(across);
+    if length2 < 1e-12 {
+        return ng;
+    }
+    let axis = across * (1.0 / length2.sqrt());
+    let u = wo.dot(axis);
+    let a = (u * u + v * v).sqrt();
+    let (cos_p, sin_p, cos_h) = (v / a, u / a, (height / a).min(1.0));
+    let sin_h = ((1.0 - cos_h) * (1.0 + cos_h)).max(0.0).sqrt();
+    let cos_2t = cos_p * cos_h - sin_p * sin_h;
+    let cos_t = (0.5 * (1.0 + cos_2t)).max(0.0).sqrt();
+    let sin_t = (0.5 * (1.0 - cos_2t)).max(0.0).sqrt();
+    ng * cos_t + axis * sin_t
+}
+
 lanes! {
     /// Tangents and bitangents of normals, of any azimuth.
     pub fn tangent_lanes(
@@ -133,5 +187,35 @@ lanes! {
             (tx[i], ty[i], tz[i]) = (frame.tangent.x, frame.tangent.y, frame.tangent.z);
             (bx[i], by[i], bz[i]) = (frame.bitangent.x, frame.bitangent.y, frame.bitangent.z);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mirror direction comes to lie as high as it must and no higher, and normals that are fit to mirror stay.
+    #[test]
+    fn mirror_directions_are_raised_above_the_surface() {
+        let mut raised_ones = 0;
+        for k in 0..20_000 {
+            let at = |step: f64| ((0.5 + f64::from(k) * step).fract() * 2.0 - 1.0) as f32;
+            let n = Vec3::new(at(0.754_877_666), at(0.569_840_29), at(0.438_579_1)).normalize_or(Vec3::Z);
+            let wo = Vec3::new(at(0.819_172_513), at(0.671_043_607), at(0.549_700_478).abs() + 1e-3).normalize();
+            if n.dot(wo) <= 0.0 {
+                continue;
+            }
+            let turned = raised(n, wo, Vec3::Z);
+            let (before, after) = (mirror_height(n, wo, Vec3::Z), mirror_height(turned, wo, Vec3::Z));
+            let least = least_height(wo.z);
+            assert!((turned.length() - 1.0).abs() < 1e-5 && turned.dot(wo) > 0.0, "{n} {wo} {turned}");
+            if before >= least {
+                assert_eq!(turned, n);
+            } else {
+                assert!((after - least).abs() < 1e-4, "{n} {wo}: {after} for {least}");
+                raised_ones += 1;
+            }
+        }
+        assert!(raised_ones > 1000);
     }
 }

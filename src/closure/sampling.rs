@@ -32,7 +32,7 @@ pub struct Sampler {
     chosen: Vec<u32>,
     xi: Column3,
     parts: Column3,
-    evaluation: Evaluation,
+    pub(super) evaluation: Evaluation,
 }
 
 impl Sampler {
@@ -83,7 +83,7 @@ impl Sampler {
         scratch.chosen.clear();
         scratch.chosen.resize(n, NONE);
         scratch.parts.resize(n);
-        for index in 0..flat.lobes.len() {
+        for (index, _) in flat.lobes.iter().enumerate().filter(|(_, lobe)| !lobe.paired) {
             let pick = &flat.picks[index * n..(index + 1) * n];
             pick_lanes(index as u32, pick, &mut scratch.left, &mut scratch.xi.x, &mut scratch.chosen);
         }
@@ -162,10 +162,8 @@ impl Sampler {
         };
         if let Some(visible) = visible {
             let pick = flat.picks[chosen as usize * n + lane];
-            let scale = flat.layers.scale_of(lobe.layer, &flat.ones)[lane];
-            let part = if visible { self.parts.get(lane) * (scale / pick) } else { Vec3::ZERO };
-            let at = 3 * n * chosen as usize + lane;
-            let weight = Vec3::new(flat.weights[at], flat.weights[at + n], flat.weights[at + 2 * n]) * part;
+            let part = if visible { self.parts.get(lane) / pick } else { Vec3::ZERO };
+            let weight = flat.scaled_weight(chosen as usize, lane) * part;
             let tint = flat.coats.get(flat.layers.coat(lobe.layer)).map_or(Vec3::ONE, |coat| coat.tint(lane));
             let weight = weight * tint;
             let good = weight.is_finite() && weight != Vec3::ZERO;

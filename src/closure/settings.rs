@@ -20,12 +20,19 @@ pub enum Layering {
     View,
     /// alpha_i alpha_o / (1 - t mean a): no loss over Lambert, reciprocal, gains up to 16 % over a mirror.
     Kelemen,
+    /// Kelemen's scale for diffuse lobes of the base and the smaller alpha for all others, each by color: no loss over diffuse
+    /// bases, reciprocal, gains over none. Costs more than `min` where layers of it lie in each other, or vary in roughness.
+    Lossless,
 }
 
 impl Layering {
     /// All variants with the word that selects them.
-    pub const ALL: [(&'static str, Layering); 3] =
-        [("min", Layering::Min), ("view", Layering::View), ("kelemen", Layering::Kelemen)];
+    pub const ALL: [(&'static str, Layering); 4] = [
+        ("min", Layering::Min),
+        ("view", Layering::View),
+        ("kelemen", Layering::Kelemen),
+        ("lossless", Layering::Lossless),
+    ];
 }
 
 impl FromStr for Layering {
@@ -33,9 +40,9 @@ impl FromStr for Layering {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let found = Self::ALL.iter().find(|(name, _)| *name == text);
-        found
-            .map(|&(_, v)| v)
-            .ok_or_else(|| format!("unknown layering rule \"{text}\"; choose \"min\", \"view\" or \"kelemen\""))
+        found.map(|&(_, v)| v).ok_or_else(|| {
+            format!("unknown layering rule \"{text}\"; choose \"min\", \"view\", \"kelemen\" or \"lossless\"")
+        })
     }
 }
 

@@ -185,14 +185,13 @@ lanes! {
 lanes! {
     /// Turns the albedo of a lobe into its share, and adds that to the total of all lobes: luminance of the weight's magnitude,
     /// albedo, and what the layers let through.
-    pub fn share_lanes(weight: [&[f32]; 3], through: &[f32], share: &mut [f32], total: &mut [f32]) {
+    pub fn share_lanes(weight: [&[f32]; 3], through: &[f32], least: f32, share: &mut [f32], total: &mut [f32]) {
         let n = share.len();
         let (x, y, z) = (&weight[0][..n], &weight[1][..n], &weight[2][..n]);
         let (through, total) = (&through[..n], &mut total[..n]);
         for i in 0..n {
             let luminance = 0.2126 * x[i].abs() + 0.7152 * y[i].abs() + 0.0722 * z[i].abs();
-            // An albedo is an estimate: a lobe that may scatter is never excluded for it.
-            share[i] = (luminance * share[i].max(1e-3) * through[i]).min(1e30);
+            share[i] = (luminance * share[i].max(least) * through[i]).min(1e30);
             total[i] += share[i];
         }
     }

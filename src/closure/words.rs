@@ -1,7 +1,7 @@
 //! Enums that a shader chooses from by a word.
 
 use super::settings::{Layering, Shadowing, SheenSampling};
-use crate::bsdf::microfacet::{Facets, Geometry, Sampling};
+use crate::bsdf::microfacet::{Facets, Geometry, Sampling, Scattering};
 
 /// An enum whose values have names in the language.
 pub trait Words: Copy + PartialEq + Send + Sync + std::fmt::Debug + 'static {
@@ -32,6 +32,10 @@ impl Words for Geometry {
 
 impl Words for Sampling {
     const ALL: &'static [(&'static str, Self)] = Sampling::ALL;
+}
+
+impl Words for Scattering {
+    const ALL: &'static [(&'static str, Self)] = Scattering::ALL;
 }
 
 /// The distribution of facets; none is a smooth boundary.

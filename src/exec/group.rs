@@ -136,6 +136,11 @@ impl Group {
         self.closures().any(|spec| spec.scatters)
     }
 
+    /// Can light pass it straight on?
+    pub fn can_pass(&self) -> bool {
+        self.closures().any(|spec| spec.passes)
+    }
+
     /// Can it be a hole in the alpha channel?
     pub fn can_hold_out(&self) -> bool {
         self.closures().any(|spec| spec.holds_out)

@@ -6,54 +6,74 @@ use crate::closure::print::closure_text;
 use crate::ir::op::{PrintTo, TextArg, TextFormat};
 use crate::ir::program::Reg;
 use crate::lang::symbols::Symbol;
-use crate::ops::format::{FormatArg, format};
+use crate::ops::format::{Format, FormatArg};
 use smallvec::SmallVec;
 use std::sync::Arc;
 use velour_grammar::Span;
 
-/// The value of one argument.
-enum Value<'r> {
-    Ints(SmallVec<[i32; 4]>),
-    Floats(SmallVec<[f32; 4]>),
-    Strings(SmallVec<[&'r str; 2]>),
-    Closure(String),
+/// The arguments of one lane, one kind after the other.
+#[derive(Default)]
+struct Values<'r> {
+    ints: SmallVec<[i32; 8]>,
+    floats: SmallVec<[f32; 16]>,
+    strings: SmallVec<[&'r str; 4]>,
+    closures: SmallVec<[String; 1]>,
 }
 
-impl Run<'_> {
-    fn text_of(&self, wanted: &TextFormat, src: &[Reg], lane: usize) -> String {
-        let mut rest = src;
-        let mut values: SmallVec<[Value; 4]> = SmallVec::new();
-        for arg in &wanted.args {
-            let count = match arg {
-                TextArg::Ints(n) | TextArg::Floats(n) | TextArg::Strings(n) => *n as usize,
-                TextArg::Closure => 1,
-            };
-            let (own, others) = rest.split_at(count);
-            rest = others;
-            let pick = |column: &[i32]| if column.len() == 1 { column[0] } else { column[lane] };
-            let pick_float = |column: &[f32]| if column.len() == 1 { column[0] } else { column[lane] };
-            values.push(match arg {
-                TextArg::Ints(_) => Value::Ints(own.iter().map(|&reg| pick(self.regs.i(reg))).collect()),
-                TextArg::Floats(_) => Value::Floats(own.iter().map(|&reg| pick_float(self.regs.f(reg))).collect()),
-                TextArg::Strings(_) => {
-                    Value::Strings(own.iter().map(|&reg| self.symbol_text(pick(self.regs.i(reg)))).collect())
-                }
-                TextArg::Closure => {
-                    Value::Closure(closure_text(self.group.table(), self.tree, self.closure(own[0]), lane))
-                }
-            });
-        }
-        let args: SmallVec<[FormatArg; 4]> = values
+impl Values<'_> {
+    /// Appends the text of a format with these arguments, which `wanted` puts in order.
+    fn write(&self, format: &Format, wanted: &TextFormat, out: &mut String) {
+        let (mut ints, mut floats, mut strings) = (&*self.ints, &*self.floats, &*self.strings);
+        let mut closures = self.closures.iter();
+        let args: SmallVec<[FormatArg; 4]> = wanted
+            .args
             .iter()
-            .map(|value| match value {
-                Value::Ints(v) => FormatArg::Int(v),
-                Value::Floats(v) => FormatArg::Float(v),
-                Value::Strings(v) => FormatArg::Str(v),
-                Value::Closure(text) => FormatArg::Closure(text),
+            .map(|arg| match arg {
+                TextArg::Ints(n) => FormatArg::Int(cut(&mut ints, *n)),
+                TextArg::Floats(n) => FormatArg::Float(cut(&mut floats, *n)),
+                TextArg::Strings(n) => FormatArg::Str(cut(&mut strings, *n)),
+                TextArg::Closure => FormatArg::Closure(closures.next().map_or("", String::as_str)),
             })
             .collect();
         // The checker has compared the format with its arguments, so what is left to fail cannot.
-        format(&wanted.text, &args).unwrap_or_default()
+        let _ = format.write(out, &args);
+    }
+}
+
+/// Takes the first `n` off.
+fn cut<'v, T>(values: &mut &'v [T], n: u32) -> &'v [T] {
+    let (own, rest) = values.split_at(n as usize);
+    *values = rest;
+    own
+}
+
+impl Run<'_> {
+    /// Appends the text of a format in one lane.
+    fn text_of(&self, format: &Format, wanted: &TextFormat, src: &[Reg], lane: usize, out: &mut String) {
+        let mut rest = src;
+        let mut values = Values::default();
+        let pick = |reg: &Reg| {
+            let column = self.regs.i(*reg);
+            if column.len() == 1 { column[0] } else { column[lane] }
+        };
+        let pick_float = |reg: &Reg| {
+            let column = self.regs.f(*reg);
+            if column.len() == 1 { column[0] } else { column[lane] }
+        };
+        for arg in &wanted.args {
+            match arg {
+                TextArg::Ints(n) => values.ints.extend(cut(&mut rest, *n).iter().map(pick)),
+                TextArg::Floats(n) => values.floats.extend(cut(&mut rest, *n).iter().map(pick_float)),
+                TextArg::Strings(n) => {
+                    values.strings.extend(cut(&mut rest, *n).iter().map(|reg| self.symbol_text(pick(reg))));
+                }
+                TextArg::Closure => {
+                    let closure = self.closure(cut(&mut rest, 1)[0]);
+                    values.closures.push(closure_text(self.group.table(), self.tree, closure, lane));
+                }
+            }
+        }
+        values.write(format, wanted, out);
     }
 
     fn symbol_text(&self, symbol: i32) -> &str {
@@ -63,11 +83,13 @@ impl Run<'_> {
     pub(super) fn print(&mut self, to: PrintTo, wanted: &TextFormat, src: &[Reg], span: Span) {
         let (file, values) = if to == PrintTo::File { src.split_at(1) } else { src.split_at(0) };
         let place = self.place(span);
+        let Ok(format) = Format::read(&wanted.text) else { return };
         for lane in 0..self.n {
             if self.s.mask[lane] == 0 {
                 continue;
             }
-            let text = self.text_of(wanted, values, lane);
+            let mut text = String::new();
+            self.text_of(&format, wanted, values, lane, &mut text);
             let (kind, text) = match to {
                 PrintTo::Output => (ReportKind::Output, text),
                 PrintTo::File => {
@@ -84,11 +106,14 @@ impl Run<'_> {
 
     pub(super) fn format(&mut self, wanted: &TextFormat, dst: Reg, src: &[Reg], span: Span) {
         let lanes = self.lanes_of(dst);
+        let Ok(format) = Format::read(&wanted.text) else { return };
+        let mut text = String::new();
         for lane in 0..lanes {
             if self.idle(lane, lanes) {
                 continue;
             }
-            let text = self.text_of(wanted, src, lane);
+            text.clear();
+            self.text_of(&format, wanted, src, lane, &mut text);
             let symbol = self.tree.strings.symbol(&text);
             self.regs.ints[dst.0 as usize][lane] = symbol.0;
         }

@@ -142,6 +142,8 @@ pub struct ClosureSpec {
     pub holds_out: bool,
     /// False when it has no lobes at all.
     pub scatters: bool,
+    /// True when light may pass straight on, so that shadow rays must ask what its surfaces let through.
+    pub passes: bool,
     /// How its albedo is found as the top of a layer.
     pub top_albedo: TopAlbedo,
 }
@@ -159,6 +161,7 @@ impl ClosureSpec {
             emits: false,
             holds_out: false,
             scatters: true,
+            passes: false,
             top_albedo: TopAlbedo::Formula,
         }
     }

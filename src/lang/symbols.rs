@@ -9,6 +9,7 @@
 
 use std::collections::HashMap;
 use std::fmt;
+use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::{LazyLock, RwLock};
 
 /// An interned string; number 0 is the empty string.
@@ -17,7 +18,7 @@ pub struct Symbol(pub i32);
 
 #[derive(Default)]
 struct Table {
-    ids: HashMap<&'static str, i32>,
+    ids: HashMap<&'static str, i32, BuildHasherDefault<TextHasher>>,
     texts: Vec<&'static str>,
 }
 
@@ -182,17 +183,37 @@ impl Strings {
     }
 }
 
-/// A hash of a text, eight bytes at a step.
+/// The hash of a text.
 fn hash(text: &str) -> u64 {
+    let mut hasher = TextHasher::default();
+    hasher.write(text.as_bytes());
+    hasher.finish()
+}
+
+/// Hashes texts eight bytes at a step.
+#[derive(Default)]
+struct TextHasher(u64);
+
+impl Hasher for TextHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        self.0 = hash_bytes(self.0, bytes);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
+}
+
+fn hash_bytes(before: u64, bytes: &[u8]) -> u64 {
     // An odd number with its bits well mixed: 2^64 over the golden ratio.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
-    let mut sum = text.len() as u64;
-    for chunk in text.as_bytes().chunks(8) {
+    let mut sum = before ^ bytes.len() as u64;
+    for chunk in bytes.chunks(8) {
         let mut word = [0; 8];
         word[..chunk.len()].copy_from_slice(chunk);
         sum = (sum.rotate_left(5) ^ u64::from_le_bytes(word)).wrapping_mul(FACTOR);
     }
-    sum ^ (sum >> 32)
+    sum
 }
 
 #[cfg(test)]

@@ -3,6 +3,10 @@
 //! A conversion that does not fit its argument is an error for the checker. At run time it is mended the way OSL mends it:
 //! integers print as %d, floats as %f, strings and closures as %s.
 
+use super::decimal::{Digits, rounded};
+use smallvec::SmallVec;
+use std::fmt::Write;
+
 /// An argument, with all its elements: a triple has three, an array as many as it is long times those of its type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FormatArg<'a> {
@@ -57,6 +61,7 @@ struct Conversion {
 }
 
 /// A piece of a format.
+#[derive(Clone, Copy, Debug)]
 enum Piece<'a> {
     Text(&'a str),
     Conversion(Conversion),
@@ -106,20 +111,42 @@ fn number(s: &str) -> (usize, &str) {
     (value, &s[end..])
 }
 
+/// A format that was read: shaders use one for every lane of a batch.
+#[derive(Debug)]
+pub struct Format<'a> {
+    pieces: SmallVec<[Piece<'a>; 8]>,
+}
+
+impl<'a> Format<'a> {
+    /// Reads a format; only its conversions can be wrong.
+    pub fn read(format: &'a str) -> Result<Self, FormatError> {
+        let (mut pieces, mut rest) = (SmallVec::new(), format);
+        while !rest.is_empty() {
+            let (piece, tail) = next_piece(rest)?;
+            pieces.push(piece);
+            rest = tail;
+        }
+        Ok(Format { pieces })
+    }
+
+    /// Appends the text of the format with its arguments.
+    pub fn write(&self, out: &mut String, args: &[FormatArg]) -> Result<(), FormatError> {
+        let mut args = args.iter();
+        for piece in &self.pieces {
+            match piece {
+                Piece::Text(text) => out.push_str(text),
+                Piece::Conversion(c) => append(out, *c, args.next().ok_or(FormatError::TooFewArguments)?),
+            }
+        }
+        if args.next().is_some() { Err(FormatError::TooManyArguments) } else { Ok(()) }
+    }
+}
+
 /// The text of a format with its arguments.
 pub fn format(format: &str, args: &[FormatArg]) -> Result<String, FormatError> {
     let mut out = String::new();
-    let mut args = args.iter();
-    let mut rest = format;
-    while !rest.is_empty() {
-        let (piece, tail) = next_piece(rest)?;
-        rest = tail;
-        match piece {
-            Piece::Text(text) => out.push_str(text),
-            Piece::Conversion(c) => append(&mut out, c, args.next().ok_or(FormatError::TooFewArguments)?),
-        }
-    }
-    if args.next().is_some() { Err(FormatError::TooManyArguments) } else { Ok(out) }
+    Format::read(format)?.write(&mut out, args)?;
+    Ok(out)
 }
 
 /// Appends all elements of an argument, single spaces between them.
@@ -141,25 +168,19 @@ fn each<T>(out: &mut String, values: &[T], mut write: impl FnMut(&mut String, &T
     }
 }
 
-/// Fills a field: `sign` stays in front of padding zeros.
-fn pad(out: &mut String, c: Conversion, zeros: bool, sign: &str, body: &str) {
-    let missing = match c.width {
-        0 => 0,
-        width => width.saturating_sub(sign.chars().count() + body.chars().count()),
-    };
-    let fill = |out: &mut String, with: char| out.extend(std::iter::repeat_n(with, missing));
+/// Widens to its field what was written from `start` on: `sign` bytes of it stay in front of padding zeros.
+fn pad(out: &mut String, c: Conversion, zeros: bool, start: usize, sign: usize) {
+    if c.width == 0 {
+        return;
+    }
+    let missing = c.width.saturating_sub(out[start..].chars().count());
     let zeros = zeros && c.zero && !c.left;
-    if !c.left && !zeros {
-        fill(out, ' ');
-    }
-    out.push_str(sign);
-    if zeros {
-        fill(out, '0');
-    }
-    out.push_str(body);
-    if c.left {
-        fill(out, ' ');
-    }
+    let (at, with) = match (c.left, zeros) {
+        (true, _) => (out.len(), " "),
+        (false, true) => (start + sign, "0"),
+        (false, false) => (start, " "),
+    };
+    out.insert_str(at, &with.repeat(missing));
 }
 
 fn sign_of(c: Conversion, negative: bool) -> &'static str {
@@ -177,99 +198,123 @@ fn string(out: &mut String, c: Conversion, s: &str) {
     while !s.is_char_boundary(end) {
         end -= 1;
     }
-    pad(out, c, false, "", &s[..end]);
+    let start = out.len();
+    out.push_str(&s[..end]);
+    pad(out, c, false, start, 0);
 }
 
 fn integer(out: &mut String, c: Conversion, value: i32) {
-    let (sign, digits) = match c.letter {
-        'x' => (if c.alternate && value != 0 { "0x" } else { "" }, format!("{value:x}")),
-        'X' => (if c.alternate && value != 0 { "0X" } else { "" }, format!("{value:X}")),
-        'o' => (if c.alternate && value != 0 { "0" } else { "" }, format!("{value:o}")),
-        'u' => ("", (value as u32).to_string()),
-        _ => (sign_of(c, value < 0), value.unsigned_abs().to_string()),
+    let sign = match c.letter {
+        'x' if c.alternate && value != 0 => "0x",
+        'X' if c.alternate && value != 0 => "0X",
+        'o' if c.alternate && value != 0 => "0",
+        'x' | 'X' | 'o' | 'u' => "",
+        _ => sign_of(c, value < 0),
     };
-    let digits = match c.precision {
-        Some(0) if value == 0 => String::new(),
-        Some(least) => format!("{digits:0>least$}"),
-        None => digits,
+    let start = out.len();
+    out.push_str(sign);
+    let digits = out.len();
+    // Writing into a text cannot fail.
+    let _ = match c.letter {
+        _ if value == 0 && c.precision == Some(0) => Ok(()),
+        'x' => write!(out, "{value:x}"),
+        'X' => write!(out, "{value:X}"),
+        'o' => write!(out, "{value:o}"),
+        'u' => write!(out, "{}", value as u32),
+        _ => write!(out, "{}", value.unsigned_abs()),
     };
-    pad(out, c, c.precision.is_none(), sign, &digits);
+    let missing = c.precision.unwrap_or(0).saturating_sub(out.len() - digits);
+    if missing > 0 {
+        out.insert_str(digits, &"0".repeat(missing));
+    }
+    pad(out, c, c.precision.is_none(), start, sign.len());
 }
 
 fn float(out: &mut String, c: Conversion, value: f64) {
+    let start = out.len();
     let sign = sign_of(c, value.is_sign_negative());
     let a = value.abs();
-    let upper = c.letter.is_ascii_uppercase();
-    if !a.is_finite() {
-        let name = if a.is_nan() { "nan" } else { "inf" };
-        return pad(out, c, false, sign, &if upper { name.to_uppercase() } else { name.to_owned() });
-    }
+    out.push_str(sign);
     let precision = c.precision.unwrap_or(6);
-    let body = match c.letter.to_ascii_lowercase() {
-        'e' => exponential(a, precision, c.alternate),
-        'g' => general(a, precision.max(1), c.alternate),
-        _ => fixed(a, precision, c.alternate),
-    };
-    pad(out, c, true, sign, &if upper { body.to_uppercase() } else { body });
+    match c.letter.to_ascii_lowercase() {
+        _ if a.is_nan() => out.push_str("nan"),
+        _ if a.is_infinite() => out.push_str("inf"),
+        'e' => exponential(out, a, precision, c.alternate),
+        'g' => general(out, a, precision.max(1), c.alternate),
+        _ => fixed(out, a, precision, c.alternate),
+    }
+    if c.letter.is_ascii_uppercase() {
+        out[start..].make_ascii_uppercase();
+    }
+    pad(out, c, a.is_finite(), start, sign.len());
 }
 
-fn fixed(a: f64, precision: usize, alternate: bool) -> String {
-    let point = if alternate && precision == 0 { "." } else { "" };
-    format!("{a:.precision$}{point}")
+fn fixed(out: &mut String, a: f64, precision: usize, alternate: bool) {
+    match rounded(a, precision as i32).and_then(|value| u64::try_from(value).ok()) {
+        Some(value) if precision <= 17 => {
+            let power = 10u64.pow(precision as u32);
+            let _ = write!(out, "{}", value / power);
+            if precision > 0 {
+                let _ = write!(out, ".{:0precision$}", value % power);
+            }
+        }
+        _ => {
+            let _ = write!(out, "{a:.precision$}");
+        }
+    }
+    if alternate && precision == 0 {
+        out.push('.');
+    }
 }
 
-/// Mantissa digits and decimal exponent of `a`, rounded.
-fn scientific(a: f64, precision: usize) -> (String, i32) {
-    let mut text = format!("{a:.precision$e}");
-    let Some(end) = text.find('e') else { return (text, 0) };
-    let exponent = text[end + 1..].parse().unwrap_or(0);
-    text.truncate(end);
-    (text, exponent)
+/// Appends significant digits of `a`, rounded and without a point, and gives the decimal exponent of the first.
+fn significant(out: &mut String, a: f64, count: usize) -> i32 {
+    if let Some(digits) = Digits::of(a, count) {
+        out.push_str(digits.text());
+        return digits.exponent;
+    }
+    let text = format!("{a:.*e}", count - 1);
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    out.extend(mantissa.chars().filter(|c| *c != '.'));
+    exponent.parse().unwrap_or(0)
 }
 
-fn with_exponent(mantissa: &str, exponent: i32) -> String {
-    let sign = if exponent < 0 { '-' } else { '+' };
-    format!("{mantissa}e{sign}{:02}", exponent.unsigned_abs())
+fn push_exponent(out: &mut String, exponent: i32) {
+    let _ = write!(out, "e{}{:02}", if exponent < 0 { '-' } else { '+' }, exponent.unsigned_abs());
 }
 
-fn exponential(a: f64, precision: usize, alternate: bool) -> String {
-    let (mantissa, exponent) = scientific(a, precision);
-    let point = if alternate && precision == 0 { "." } else { "" };
-    with_exponent(&format!("{mantissa}{point}"), exponent)
+fn exponential(out: &mut String, a: f64, precision: usize, alternate: bool) {
+    let start = out.len();
+    let exponent = significant(out, a, precision + 1);
+    if precision > 0 || alternate {
+        out.insert(start + 1, '.');
+    }
+    push_exponent(out, exponent);
 }
 
 /// The shorter of the other two, with `precision` significant digits and no zeros at the end unless asked for.
-fn general(a: f64, precision: usize, alternate: bool) -> String {
-    let (mantissa, exponent) = scientific(a, precision - 1);
+fn general(out: &mut String, a: f64, precision: usize, alternate: bool) {
+    let start = out.len();
+    let exponent = significant(out, a, precision);
     let with_power = exponent < -4 || exponent >= precision as i32;
-    let mut text = if with_power { mantissa } else { shifted(&mantissa, exponent) };
-    let pointed = text.contains('.');
-    if alternate && !with_power && !pointed {
-        text.push('.');
-    } else if !alternate && pointed {
-        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+    if !alternate {
+        let kept = out[start + 1..].trim_end_matches('0').len();
+        out.truncate(start + 1 + kept);
     }
-    if with_power { with_exponent(&text, exponent) } else { text }
-}
-
-/// The digits of a mantissa with the point where the exponent puts it, which has as many digits as the exact value rounded there.
-fn shifted(mantissa: &str, exponent: i32) -> String {
-    let digits = mantissa.bytes().filter(|&digit| digit != b'.').map(char::from);
-    let mut out = String::with_capacity(mantissa.len() + 8);
-    if exponent < 0 {
-        out.push_str("0.");
-        out.extend(std::iter::repeat_n('0', -exponent as usize - 1));
-        out.extend(digits);
-        return out;
+    let digits = out.len() - start;
+    if !with_power && exponent < 0 {
+        // The exponent is -4 at least, or it would be written.
+        out.insert_str(start, &"0.000"[..1 + exponent.unsigned_abs() as usize]);
+        return;
     }
-    let whole = exponent as usize + 1;
-    for (at, digit) in digits.enumerate() {
-        if at == whole {
-            out.push('.');
-        }
-        out.push(digit);
+    let whole = if with_power { 1 } else { exponent as usize + 1 };
+    out.extend(std::iter::repeat_n('0', whole.saturating_sub(digits)));
+    if digits > whole || alternate && !with_power {
+        out.insert(start + whole, '.');
     }
-    out
+    if with_power {
+        push_exponent(out, exponent);
+    }
 }
 
 /// Checks a format against the kinds of its arguments; `first` is the number by which the message calls the first of them.

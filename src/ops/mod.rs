@@ -19,6 +19,7 @@
 pub mod arithmetic;
 pub mod color;
 pub mod color_slope;
+pub mod decimal;
 pub mod format;
 pub mod fresnel;
 pub mod hash;

@@ -1,5 +1,6 @@
 //! Emission that paths find and light that they sample: what each counts for, so that together they count once.
 
+use super::crossing::Crossing;
 use super::path::{Dropped, Path};
 use super::settings::LightStrategy;
 use super::sky::SkyTable;
@@ -8,13 +9,26 @@ use crate::lanes;
 use crate::math::columns::Column3;
 use glam::Vec3;
 
-/// Adds to a path the radiance of the surface that its ray has hit.
+/// Adds to a path the radiance of the surface that its ray has hit; `crossing` is what it remembers of clear surfaces.
 #[inline]
-pub fn found_on_surface(world: &World, path: &mut Path, radiance: Vec3, material: usize, dropped: &mut Dropped) {
+pub fn found_on_surface(
+    world: &World,
+    path: &mut Path,
+    crossing: Option<&Crossing>,
+    radiance: Vec3,
+    material: usize,
+    dropped: &mut Dropped,
+) {
     if radiance == Vec3::ZERO {
         return;
     }
-    let other = world.lights.pdf(&world.scene.geometry, &path.segment, path.from);
+    let other = match crossing {
+        None => world.lights.pdf(&world.scene.geometry, &path.segment, path.from),
+        Some(crossing) => {
+            let (segment, from) = crossing.whole(path);
+            world.lights.pdf(&world.scene.geometry, &segment, from)
+        }
+    };
     let weight = weight_of_found(world.settings.lights, path.pdf_solid_angle, other);
     path.gather(path.throughput * radiance * weight, material, dropped);
 }

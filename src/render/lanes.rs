@@ -1,8 +1,10 @@
 //! A batch's paths as columns: gathered once, so that what is done for every lane is done for many at a time.
 
+use super::crossing::Crossing;
 use super::path::Path;
 use super::random;
 use crate::math::columns::Column3;
+use glam::Vec3;
 
 /// Random numbers, drawn for many lanes at a time.
 #[derive(Clone, Debug, Default)]
@@ -47,6 +49,15 @@ pub struct Lanes {
 }
 
 impl Lanes {
+    /// Takes the lights from paths that may not bounce any more.
+    pub fn stop(&mut self, crossings: &[Crossing], max_bounces: u32) {
+        for (lane, &i) in self.paths.iter().enumerate().filter(|_| !crossings.is_empty()) {
+            if crossings[i as usize].bounces >= max_bounces {
+                self.throughput.set(lane, Vec3::ZERO);
+            }
+        }
+    }
+
     /// Fills the columns from the paths of the batch.
     pub fn gather(&mut self, paths: &[Path]) {
         let len = self.paths.len();

@@ -17,8 +17,7 @@ pub struct Path {
     pub pdf_solid_angle: f32,
     /// The sample so far.
     pub radiance: Vec3,
-    /// The part of the sample that is not background; a clear surface may weigh more than 1, so only the mean of many
-    /// samples is a share.
+    /// The part of the sample that is not background, 0..1.
     pub alpha: f32,
     /// True while nothing but clear surfaces has been met.
     pub clear: bool,

@@ -59,6 +59,8 @@ pub struct MaterialPlan {
     pub scatters: bool,
     /// It may be a hole in the alpha channel.
     pub holds_out: bool,
+    /// Light may pass it straight on.
+    pub clear: bool,
     /// What it reads.
     pub needs: Needs,
 }
@@ -70,6 +72,9 @@ pub struct Plan {
     pub materials: Vec<MaterialPlan>,
     /// Any material reads derivatives, so paths carry the width of their cone.
     pub cones: bool,
+    /// Light may pass some material straight on, so shadow rays look for their closest hits, and paths count their bounces
+    /// and remember where they last scattered.
+    pub clear: bool,
     /// Primitives that are sampled as lights.
     pub lights: usize,
     /// The background's radiance is one constant.
@@ -88,6 +93,7 @@ impl Plan {
                 emits: m.surface.can_emit(),
                 scatters: m.surface.can_scatter(),
                 holds_out: m.surface.can_hold_out(),
+                clear: m.surface.can_pass(),
                 needs: Needs::of(&m.surface),
             })
             .collect();
@@ -105,7 +111,8 @@ impl Plan {
             _ => 0,
         };
         let cones = materials.iter().any(|m| m.needs.any_derivative());
-        Plan { cones, materials, lights, constant_background: constant, background_table }
+        let clear = materials.iter().any(|m| m.clear);
+        Plan { cones, clear, materials, lights, constant_background: constant, background_table }
     }
 }
 
@@ -138,6 +145,11 @@ impl fmt::Display for Plan {
             "ray cones: {}",
             or(self.cones, "carried, derivatives are read", "not carried, no derivative is read")
         )?;
+        if self.clear {
+            let names: Vec<String> =
+                (0..self.materials.len()).filter(|i| self.materials[*i].clear).map(|i| i.to_string()).collect();
+            writeln!(f, "clear surfaces: material {}, which shadow rays pass with their color", names.join(", "))?;
+        }
         for (i, m) in self.materials.iter().enumerate() {
             let uv = or(m.needs.uv, "uv", "no uv");
             writeln!(

@@ -74,7 +74,8 @@ impl Shading {
             return;
         }
         let tree = self.machine.shade(group, &self.points);
-        self.lobes.flatten(group.library(), tree, &self.viewer, &self.points.ng);
+        let Points { ng, backfacing, .. } = &self.points;
+        self.lobes.flatten_sides(group.library(), tree, &self.viewer, ng, backfacing);
         let mut news = Vec::new();
         if !self.lobes.dropped().is_empty() {
             report_dropped(group, tree, &self.lobes, &mut news);
@@ -117,6 +118,19 @@ impl Shading {
     /// Samples a direction a lane by `random`.
     pub fn sample(&mut self) {
         self.lobes.sample(&self.random, &mut self.samples);
+    }
+
+    /// What passes the surfaces straight on toward the viewer, a color a lane.
+    pub fn straight(&mut self, out: &mut Column3) {
+        self.lobes.straight(out);
+    }
+
+    /// Reports something about the render itself, once.
+    pub fn warn(&mut self, text: String) {
+        let report = Report::warning(text);
+        if self.told.len() < MOST_REPORTS && self.told.insert(report.key()) {
+            self.reports.push(report);
+        }
     }
 
     /// Forgets what was said, so that it is said again, and whether a shader could be run.

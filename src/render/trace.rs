@@ -23,8 +23,11 @@ fn trace(world: &World, wave: &mut Wave) {
                 continue;
             }
             shade(world, wave);
-            if bounce < world.settings.max_bounces && world.plan.materials[wave.lanes.material].scatters {
+            // Paths that passed clear surfaces each have a count of their own.
+            let counted = bounce < world.settings.max_bounces || world.plan.clear;
+            if counted && world.plan.materials[wave.lanes.material].scatters {
                 wave.lanes.gather(&wave.paths);
+                wave.lanes.stop(&wave.crossings, world.settings.max_bounces);
                 sample_light(world, wave);
                 scatter(world, wave);
             }

@@ -3,6 +3,8 @@
 //! The stages are in `stages`, their order in `trace`. A path only ever adds to its own radiance, in the order of its own
 //! bounces, so the sums do not depend on how paths were batched.
 
+use super::accel::Hit;
+use super::crossing::Crossing;
 use super::lanes::{Draws, Lanes};
 use super::light::LightLanes;
 use super::path::{Dropped, Path, ShadowRay};
@@ -16,6 +18,8 @@ use std::ops::Range;
 pub struct Wave {
     /// The paths.
     pub paths: Vec<Path>,
+    /// What the paths remember of clear surfaces, where the scene has any.
+    pub crossings: Vec<Crossing>,
     /// Where in its pixel each path began, both in [0, 1].
     pub positions: Vec<[f32; 2]>,
     /// Paths still on their way.
@@ -32,7 +36,7 @@ pub struct Wave {
     pub shading: Shading,
     /// Its samples of lights.
     pub lit: LightLanes,
-    /// What a unit of their radiance adds.
+    /// What a unit of their radiance adds, or what the batch's surfaces let through.
     pub weights: Column3,
     /// Shadow rays to lights.
     pub light_shadows: ShadowQueue,
@@ -90,6 +94,10 @@ pub struct ShadowQueue {
     pub reached: Vec<(u32, u32)>,
     /// Of a batch of those, the segments.
     pub segments: Vec<Segment>,
+    /// Those that are still on their way through clear surfaces.
+    pub pending: Vec<u32>,
+    /// Material, number and hit of those that have met a clear surface.
+    pub crossed: Vec<(u32, u32, Hit)>,
 }
 
 impl Wave {
@@ -97,6 +105,7 @@ impl Wave {
     pub fn new(world: &World) -> Self {
         Wave {
             paths: Vec::new(),
+            crossings: Vec::new(),
             positions: Vec::new(),
             active: Vec::new(),
             next: Vec::new(),
@@ -117,6 +126,7 @@ impl Wave {
     /// Forgets all paths.
     pub fn clear(&mut self) {
         self.paths.clear();
+        self.crossings.clear();
         self.positions.clear();
         self.active.clear();
         self.next.clear();

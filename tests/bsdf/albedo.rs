@@ -5,7 +5,7 @@ use std::time::Instant;
 use velour::bsdf::fresnel::{Conductor, Dielectric, Fresnel, Schlick};
 use velour::bsdf::microfacet::albedo::FacetTable;
 use velour::bsdf::microfacet::distribution::{Distribution, Widths};
-use velour::bsdf::microfacet::{Beckmann, Blinn, Geometry, Ggx, Method, Microfacet, Sampling};
+use velour::bsdf::microfacet::{Beckmann, Blinn, Geometry, Ggx, Method, Microfacet};
 use velour::bsdf::{Choice, Scatter, params};
 
 /// Slopes of facets by rank, from each distribution's own integral.
@@ -190,7 +190,7 @@ fn tops_know_their_shadowing() {
         let mut worst = 0.0f64;
         for alpha in [0.03f32, 0.1, 0.3, 0.6, 1.0] {
             for (eta, cos) in [0.0, 1.5].into_iter().flat_map(|eta| [0.01, 0.05, 0.2, 0.5, 0.9].map(|cos| (eta, cos))) {
-                let choice = Method { geometry, sampling: Sampling::Visible }.into();
+                let choice = Method { geometry, ..Method::default() }.into();
                 let model = Microfacet::<D, Dielectric, false>::prepare(params([alpha, alpha, eta])).choose(choice);
                 let wo = crate::narrow(crate::direction(cos, 0.2));
                 let stated = f64::from(model.top_albedo(wo));
@@ -238,7 +238,7 @@ fn both<A: Scatter, B: Scatter>(up: A, down: B, wo: Vec3) -> f64 {
 
 /// The largest sum of both halves, and the largest error of what the transmitting half says it takes as a layer's top.
 fn halves<D: Distribution>(geometry: Geometry, most: &mut f64, off: &mut f64) {
-    let m = Choice::from(Method { geometry, sampling: Sampling::Visible });
+    let m = Choice::from(Method { geometry, ..Method::default() });
     for (x, y) in [(0.001, 0.001), (0.02, 0.02), (0.1, 0.4), (0.3, 0.3), (1.0, 0.2), (1.0, 1.0)] {
         for cos in [1e-4, 0.03, 0.3, 1.0] {
             let wo = crate::narrow(crate::direction(cos, 0.5));

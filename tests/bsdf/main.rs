@@ -1,6 +1,7 @@
 //! Scattering models and layering: golden figures, stress, samplers against densities, furnaces, trees.
 
 mod albedo;
+mod between;
 mod boundaries;
 mod coat;
 mod extremes;
@@ -8,6 +9,7 @@ mod fits;
 mod golden;
 mod hair;
 mod layering;
+mod lossless;
 mod microfacet;
 mod model_closures;
 mod models;

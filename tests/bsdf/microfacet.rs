@@ -165,7 +165,7 @@ fn grooves_are_as_tabulated() {
 
 /// The choice of a shadowing term and a way of sampling.
 fn method(geometry: Geometry, sampling: Sampling) -> Choice {
-    Method { geometry, sampling }.into()
+    Method { geometry, sampling, ..Method::default() }.into()
 }
 
 /// Every model with every method at a few widths.

@@ -1,13 +1,16 @@
 //! The renderer against answers known exactly, against itself, and against bad input.
 
 mod adaptive;
+mod clear;
 mod cloth;
 mod determinism;
 mod emitters;
 mod exact;
 mod files;
 mod furnace;
+mod glass;
 mod materials;
+mod normals;
 mod rays;
 mod rounds;
 mod shaders;

@@ -27,6 +27,13 @@ pub struct Dielectric {
     eta: f32,
 }
 
+impl Dielectric {
+    /// The dielectric of an index, transmitted over incident.
+    pub fn of(eta: f32) -> Self {
+        Dielectric { eta: eta.min(1e3) }
+    }
+}
+
 impl Fresnel for Dielectric {
     const PARAMS: usize = 1;
     const COLORED: bool = false;
@@ -49,6 +56,11 @@ impl Fresnel for Dielectric {
     #[inline(always)]
     fn largest(&self, cos: f32) -> f32 {
         dielectric(cos, self.eta)
+    }
+
+    #[inline(always)]
+    fn mean(&self, cos: f32) -> f32 {
+        self.largest(cos)
     }
 
     #[inline(always)]

@@ -33,6 +33,12 @@ pub trait Fresnel: Copy + 'static {
         let c = self.color(cos);
         c.x.max(c.y).max(c.z)
     }
+    /// The mean component.
+    #[inline(always)]
+    fn mean(&self, cos: f32) -> f32 {
+        let c = self.color(cos);
+        (c.x + c.y + c.z) * (1.0 / 3.0)
+    }
     /// The largest component of what is not reflected.
     #[inline(always)]
     fn passed(&self, cos: f32) -> f32 {

@@ -28,9 +28,9 @@ use std::sync::OnceLock;
 /// Nodes of the rule.
 const NODES: usize = 6;
 /// Widths in the table.
-const WIDTHS: usize = 24;
+pub(super) const WIDTHS: usize = 24;
 /// Cosines in the table, for each width.
-const COSINES: usize = 40;
+pub(super) const COSINES: usize = 40;
 /// How much of the axis is linear in the width.
 const LINEAR: f32 = 6.0;
 /// Where the axis of cosines turns from linear to logarithmic, in widths.
@@ -130,19 +130,31 @@ pub struct FacetTable {
 
 /// Place of a width on its axis, 0..1.
 #[inline(always)]
-fn width_axis(alpha: f32) -> f32 {
+pub(super) fn width_axis(alpha: f32) -> f32 {
     let place = |a: f32| log2(a) * LN_2 + LINEAR * a;
     (place(alpha) - place(LEAST)) / (place(1.0) - place(LEAST))
 }
 
 /// Place of a cosine on the axis of a width, 0..1.
 #[inline(always)]
-fn cosine_axis(cos: f32, alpha: f32) -> f32 {
+pub(super) fn cosine_axis(cos: f32, alpha: f32) -> f32 {
     let over = 1.0 / (BEND * alpha);
     log2(1.0 + cos * over) / log2(1.0 + over)
 }
 
+/// The cosine at a place of the axis of a width.
+pub(super) fn cosine_at(place: f32, alpha: f32) -> f32 {
+    let over = 1.0 / (BEND * alpha);
+    ((exp2(place * log2(1.0 + over)) - 1.0) / over).clamp(1e-6, 1.0)
+}
+
 impl FacetTable {
+    /// The albedo of a full mirror at all places of the table, width by width.
+    pub(super) fn mirrors(&self) -> impl Iterator<Item = f32> + '_ {
+        // The weights of a rule fill the second half of a cell.
+        self.cells.iter().map(|[_, q, r]| q.z + q.w + r.element_sum())
+    }
+
     /// The albedos of all widths of a distribution under a shadowing term, made when they are first asked for.
     pub fn of<D: Distribution>(geometry: Geometry) -> &'static FacetTable {
         static TABLES: [[OnceLock<FacetTable>; Geometry::ALL.len()]; Facets::COUNT] =
@@ -159,9 +171,7 @@ impl FacetTable {
             let alpha = width_at(i as f32 / (WIDTHS - 1) as f32);
             let distribution = D::new(Widths { x: alpha, y: alpha });
             for j in 0..COSINES {
-                let over = 1.0 / (BEND * alpha);
-                let t = j as f32 / (COSINES - 1) as f32;
-                let cos = ((exp2(t * log2(1.0 + over)) - 1.0) / over).clamp(1e-6, 1.0);
+                let cos = cosine_at(j as f32 / (COSINES - 1) as f32, alpha);
                 points.clear();
                 facets(&distribution, geometry, [alpha, cos], [&along, &across], &mut points);
                 let rule: [Node; NODES] = gauss_rule(&points);
@@ -230,7 +240,7 @@ impl FacetTable {
 ///
 /// Source: Catmull and Rom 1974; at the ends a straight line goes on.
 #[inline(always)]
-fn cubic(place: f32, count: usize) -> (u32, [f32; 4]) {
+pub(super) fn cubic(place: f32, count: usize) -> (u32, [f32; 4]) {
     let last = count as u32 - 2;
     let x = (place * (count - 1) as f32).clamp(0.0, (count - 1) as f32);
     let i = floor_and_rest(x).0.min(last);
@@ -244,13 +254,13 @@ fn cubic(place: f32, count: usize) -> (u32, [f32; 4]) {
 
 /// The four places that [`cubic`] weighs.
 #[inline(always)]
-fn around(i: u32, count: usize) -> [usize; 4] {
+pub(super) fn around(i: u32, count: usize) -> [usize; 4] {
     let i = (i as usize).min(count - 2);
     [i.max(1) - 1, i, i + 1, (i + 2).min(count - 1)]
 }
 
 /// The width at a place of the axis, by bisection.
-fn width_at(place: f32) -> f32 {
+pub(super) fn width_at(place: f32) -> f32 {
     let (mut low, mut high) = (LEAST, 1.0);
     for _ in 0..40 {
         let middle = 0.5 * (low + high);

@@ -63,6 +63,21 @@ impl Sampling {
     pub const ALL: &[(&str, Sampling)] = &[("visible", Sampling::Visible), ("normals", Sampling::Normals)];
 }
 
+/// How often facets are met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Scattering {
+    /// Once: rough facets lose what they send to other facets.
+    #[default]
+    Single,
+    /// Any number of times: nothing is lost.
+    Multiple,
+}
+
+impl Scattering {
+    /// Both, by the word that chooses them.
+    pub const ALL: &[(&str, Scattering)] = &[("multiple", Scattering::Multiple), ("single", Scattering::Single)];
+}
+
 /// What a boundary has chosen beside its distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Method {
@@ -70,11 +85,13 @@ pub struct Method {
     pub geometry: Geometry,
     /// How its directions are drawn.
     pub sampling: Sampling,
+    /// How often its facets are met.
+    pub scattering: Scattering,
 }
 
 impl From<Method> for Choice {
     fn from(method: Method) -> Self {
-        Choice(method.geometry as u8 + 3 * method.sampling as u8)
+        Choice(method.geometry as u8 + 3 * method.sampling as u8 + 6 * method.scattering as u8)
     }
 }
 
@@ -86,7 +103,8 @@ impl From<Choice> for Method {
             1 => Geometry::Separable,
             _ => Geometry::VGroove,
         };
-        Method { geometry, sampling: if number < 3 { Sampling::Visible } else { Sampling::Normals } }
+        let sampling = if number % 6 < 3 { Sampling::Visible } else { Sampling::Normals };
+        Method { geometry, sampling, scattering: if number < 6 { Scattering::Single } else { Scattering::Multiple } }
     }
 }
 
@@ -98,8 +116,10 @@ mod tests {
     fn choices_carry_every_method() {
         for &(_, geometry) in Geometry::ALL {
             for &(_, sampling) in Sampling::ALL {
-                let method = Method { geometry, sampling };
-                assert_eq!(Method::from(Choice::from(method)), method);
+                for &(_, scattering) in Scattering::ALL {
+                    let method = Method { geometry, sampling, scattering };
+                    assert_eq!(Method::from(Choice::from(method)), method);
+                }
             }
         }
         assert_eq!(Choice::from(Method::default()), Choice::default());

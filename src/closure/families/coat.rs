@@ -49,7 +49,7 @@ fn prepare(a: Coat, leaf: &mut LeafMaker<'_>) {
         let all = [tree.float(alpha, lane), tree.float(eta, lane), tree.float(thickness, lane)];
         absorbs(lane).is_finite() && all.iter().all(|v| v.is_finite())
     };
-    let frame = leaf.frame(a.N, None);
+    let frame = leaf.mirror_frame(a.N, None);
     leaf.nest(a.base);
     let broken = (0..lanes).any(|lane| !number(lane));
     let rough = |leaf: &LeafMaker<'_>, lane| Some(leaf.float(alpha, lane) >= MIN_ALPHA);

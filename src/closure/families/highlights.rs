@@ -21,7 +21,7 @@ arguments! {
 pub(super) fn phong() -> ClosureDef {
     let doc = "highlight about the mirror direction (modified Phong, Lafortune and Willems 1994)";
     ClosureDef::new("phong", doc, |a: Phong, leaf| {
-        let frame = leaf.frame(a.N, None);
+        let frame = leaf.mirror_frame(a.N, None);
         leaf.lobe(LobeKind::of::<modified::Phong>(), frame, &[a.exponent.0]);
     })
 }
@@ -50,7 +50,7 @@ const WARD_WAIVERS: &[Waiver] = &[Waiver {
 pub(super) fn ward() -> ClosureDef {
     ClosureDef::new("ward", "anisotropic Gaussian highlight", |a: Ward, leaf| {
         let tangent = if a.ax == a.ay { None } else { Some(a.T) };
-        let frame = leaf.frame(a.N, tangent);
+        let frame = leaf.mirror_frame(a.N, tangent);
         let bounded = |leaf: &LeafMaker<'_>, lane| Some(a.bounded.is_some_and(|c| leaf.int(c.0, lane) != 0));
         for (bounded, gate) in leaf.variants(a.bounded.varies(), bounded) {
             let kind = match bounded {
@@ -79,7 +79,7 @@ pub(super) fn ashikhmin_shirley() -> ClosureDef {
     ClosureDef::new("ashikhmin_shirley", doc, |a: AshikhminShirley, leaf| {
         let (x, y) = (a.exponent_x.0, a.exponent_y.0);
         let ([sr, sg, sb], [dr, dg, db]) = (a.specular.0, a.diffuse.0);
-        let frame = leaf.frame(a.N, if x == y { None } else { Some(a.U) });
+        let frame = leaf.mirror_frame(a.N, if x == y { None } else { Some(a.U) });
         leaf.lobe(LobeKind::of::<shirley::Highlight>(), frame, &[x, y, sr, sg, sb]);
         leaf.lobe(LobeKind::of::<shirley::Under>(), frame, &[sr, sg, sb, dr, dg, db]);
     })
@@ -97,7 +97,7 @@ arguments! {
 pub(super) fn lafortune() -> ClosureDef {
     let doc = "one generalised cosine lobe (Lafortune et al. 1997); several lobes are the sum of several closures";
     ClosureDef::new("lafortune", doc, |a: Lafortune, leaf| {
-        let frame = leaf.frame(a.N, Some(a.U));
+        let frame = leaf.mirror_frame(a.N, Some(a.U));
         let [x, y, z] = a.coefficients.0;
         leaf.lobe(LobeKind::of::<cosines::Lafortune>(), frame, &[x, y, z, a.exponent.0]);
     })

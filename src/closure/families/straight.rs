@@ -11,5 +11,5 @@ pub(super) fn transparent(name: &'static str) -> ClosureDef {
     let straight = |_: Nothing, leaf: &mut crate::closure::leaf::LeafMaker<'_>| {
         leaf.straight();
     };
-    ClosureDef::new(name, "lets light pass straight through", straight).lossless()
+    ClosureDef::new(name, "lets light pass straight through", straight).lossless().passing()
 }

@@ -27,21 +27,23 @@ fn worst(rule: Layering) -> Worst {
         let curve = AlbedoCurve::exact(SheenAlbedo::Long, true, r as f32);
         let albedo = |cos: f64| f64::from(curve.by::<LONG_METHOD>(cos as f32));
         let mean = average(albedo);
-        let scale = |i: f64, o: f64| {
+        let scale_of = |i: f64, o: f64, diffuse: bool| {
             let (pass_i, pass_o) = (1.0 - albedo(i), 1.0 - albedo(o));
             match rule {
                 Layering::Min => pass_i.min(pass_o),
                 Layering::View => pass_o,
-                Layering::Kelemen => pass_i * pass_o / (1.0 - mean),
+                Layering::Lossless if !diffuse => pass_i.min(pass_o),
+                Layering::Kelemen | Layering::Lossless => pass_i * pass_o / (1.0 - mean),
             }
         };
+        let scale = |i: f64, o: f64| scale_of(i, o, true);
         for &o in &cosines {
             // The albedo bends where both sides are alike, so the integral is split there.
             let split = o.cbrt();
             let parts = [(0.0, split), (split, 1.0)].into_iter().flat_map(|(a, b)| gauss_legendre(24, a, b));
             let base: f64 = parts.map(|n| n.weight * 6.0 * n.x.powi(5) * scale(n.x.powi(3), o)).sum();
             out.loss = out.loss.max((1.0 - albedo(o) - base).abs());
-            out.gain = out.gain.max(albedo(o) + scale(o, o) - 1.0);
+            out.gain = out.gain.max(albedo(o) + scale_of(o, o, false) - 1.0);
             for &i in &cosines {
                 out.one_way = out.one_way.max((scale(i, o) - scale(o, i)).abs());
             }
@@ -86,7 +88,7 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
             "{MEDIANS} Three errors, each the worst over roughness 0.06 to 1 and all cosines, for a white sheen (softened exact \
                   term): how far the albedo of sheen over a white Lambertian base is from 1; what a mirror under it sends back \
                   beyond 1; and how much the scale of the base changes when light and viewer trade places. Only `min` \
-                  never gains and is reciprocal."
+                  and `lossless` never gain and are reciprocal, and only the latter loses nothing over Lambert."
         ),
         join: Join::Front,
         points,

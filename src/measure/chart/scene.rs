@@ -46,7 +46,7 @@ type Variant = (&'static str, &'static str, fn(&mut Settings));
 
 const EXACT: &str = "exact layering";
 
-const VARIANTS: [Variant; 12] = [
+const VARIANTS: [Variant; 13] = [
     (EXACT, "defaults", |_| ()),
     (EXACT, "uniform sheen, no light samples", |s| {
         s.lights = LightStrategy::ScatteringOnly;
@@ -62,6 +62,7 @@ const VARIANTS: [Variant; 12] = [
     (EXACT, "waves of 256 paths", |s| s.wave_size = 256),
     ("view layering", "layering: view", |s| s.closure.layering = Layering::View),
     ("kelemen layering", "layering: kelemen", |s| s.closure.layering = Layering::Kelemen),
+    ("lossless layering", "layering: lossless", |s| s.closure.layering = Layering::Lossless),
 ];
 
 /// The seed of the converged images, which no other image has.

@@ -15,6 +15,10 @@ pub struct Effort {
     pub sampled: Vec<f64>,
     /// Cosines of the views that are only integrated.
     pub integrated: Vec<f64>,
+    /// Places and views of a shader that are surveyed for a closer look; an eighth of it for each further value of a parameter.
+    pub places: usize,
+    /// Values that each range of a shader's parameters is surveyed at.
+    pub steps: usize,
     /// Batches of pairs whose directions are exchanged.
     pub pairs: usize,
     /// Chosen by the user, to try other random numbers.
@@ -31,6 +35,8 @@ impl Effort {
             tolerance: 1e-6,
             sampled: vec![0.05, 0.25, 0.5, 0.75, 0.999],
             integrated: vec![1e-4, 1e-3, 0.01, 0.1, 0.9, 1.0],
+            places: 1 << 16,
+            steps: 24,
             pairs: 16,
             seed: 0,
         }
@@ -56,6 +62,8 @@ impl Effort {
             directions: 100_000,
             tolerance: 2e-6,
             integrated: vec![1e-4, 0.01],
+            places: 1 << 13,
+            steps: 8,
             pairs: 4,
             ..Effort::full()
         }

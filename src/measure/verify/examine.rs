@@ -5,6 +5,7 @@ use super::finding::{Check, Finding, Line, Report, Verdict};
 use super::subject::Subject;
 use super::view::{self, View};
 use super::{finite, laws, reciprocity};
+use crate::math::columns::Column3;
 use crate::measure::statistics::{Random, seed_of, sidak};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -74,11 +75,17 @@ fn examine_once(subject: &dyn Subject, variant: usize, effort: &Effort) -> Vec<F
     let promises = subject.promises(variant);
     let mut scatterer = subject.scatterer(variant);
     let scatterer = scatterer.as_mut();
+    let extra = subject.views(variant);
+    for view in &extra {
+        // What a shader complains of from there is told with what is no number.
+        scatterer.look(&Column3::splat(view.wo(), 1));
+    }
     let mut findings = vec![finite::finite(scatterer, random)];
     let cosines =
         effort.sampled.iter().map(|&cos| (cos, true)).chain(effort.integrated.iter().map(|&cos| (cos, false)));
     // Azimuths all around, so that no symmetry of a lobe hides anything.
     let views = cosines.enumerate().map(|(k, (cos, sampled))| (View { cos, azimuth: 0.4 + 2.4 * k as f64 }, sampled));
+    let views = views.chain(extra.iter().map(|&view| (view, false)));
     let seen: Vec<view::Seen> =
         views.map(|(view, sampled)| view::look(scatterer, view, sampled, effort, random)).collect();
     let dark = |seen: &view::Seen| {

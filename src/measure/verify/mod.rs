@@ -5,7 +5,9 @@
 //! [`reciprocity`], [`finite`]) give a [`Finding`] each, and [`verify`] makes a [`Report`] of them. Random numbers are seeded by the
 //! names of subject and variant, so a report depends on neither time nor threads.
 
+mod choices;
 mod closure;
+mod direction;
 pub mod draws;
 mod effort;
 mod examine;
@@ -16,6 +18,7 @@ mod nothing;
 pub mod reciprocity;
 mod shader;
 pub mod subject;
+mod survey;
 mod tree;
 pub mod view;
 

@@ -1,38 +1,40 @@
 //! A user's shader as a subject: its whole closure tree is what scatters, over ranges of its parameters and of the surface.
 
+use super::choices::{Setting, ranges, setting, surveyed};
+use super::direction::View;
+use super::effort::Effort;
 use super::nothing::Nothing;
 use super::subject::{Promise, Promises, Scatterer, Subject};
+use super::survey::{Suspect, survey};
 use super::tree::{Spot, TreeScatterer};
-use super::view::View;
-use crate::check::typed::{Expr, ExprKind, Metadata};
 use crate::closure::Settings;
 use crate::closure::print::tree_text;
 use crate::compile::{GroupError, Shader};
-use crate::exec::{Group, Machine, Points};
-use crate::lang::types::{Base, Type};
+use crate::exec::{Group, Machine, Points, RAY_TYPES};
 use crate::math::columns::Column3;
+use rayon::prelude::*;
 
-use velour_grammar::ast::UnaryOp;
-
-/// Names that metadata gives to the ends of a parameter's range, hard limits first.
-const RANGES: [(&str, &str); 4] =
-    [("min", "max"), ("softmin", "softmax"), ("UImin", "UImax"), ("slidermin", "slidermax")];
-/// Values that a range is tried at.
-const STEPS: usize = 5;
 /// Surface coordinates that are tried, all against all.
 const GRID: [f32; 3] = [0.1, 0.5, 0.9];
 
-/// A parameter that the user sets, and the values to try: several for a sweep.
-struct Setting {
-    name: String,
-    values: Vec<String>,
+/// How many groups are surveyed at most, and how many places of all are looked at again.
+const MOST_GROUPS: usize = 96;
+const MOST_SUSPECTS: usize = 6;
+
+/// A group at a place, with the parameters that make it, and views to try beside the usual ones.
+#[derive(Clone, Debug)]
+struct Variant {
+    label: String,
+    group: Group,
+    spot: Spot,
+    views: Vec<View>,
 }
 
 /// A shader with the places and parameters it is tried at.
 #[derive(Debug)]
 pub struct ShaderSubject {
     name: String,
-    variants: Vec<(String, Group, Spot)>,
+    variants: Vec<Variant>,
     settings: Settings,
 }
 
@@ -47,6 +49,7 @@ impl ShaderSubject {
         shader: &Shader,
         given: &[(String, String)],
         settings: Settings,
+        effort: &Effort,
     ) -> Result<Self, GroupError> {
         let set: Vec<Setting> = given.iter().map(|(name, text)| setting(shader, name, text)).collect();
         let ranges: Vec<Setting> =
@@ -65,16 +68,61 @@ impl ShaderSubject {
         }
         let mut variants = Vec::new();
         for choice in choices {
-            let builder = choice.iter().fold(shader.group(), |builder, (name, text)| builder.text(name, text));
-            let group = builder.build()?;
+            let group = build(shader, &choice)?;
             let spots = spots(&group);
             let many = spots.len() > 1;
             for spot in spots {
-                variants.push((label(&choice, spot, many), group.clone(), spot));
+                let label = label(&choice, spot, many);
+                variants.push(Variant { label, group: group.clone(), spot, views: Vec::new() });
             }
         }
+        let free = |setting: &Setting| set.iter().all(|given| given.name != setting.name);
+        let surveyed: Vec<Setting> = surveyed(shader, effort.steps).into_iter().filter(free).collect();
+        variants.extend(suspects(shader, &usual, &surveyed, settings, effort));
         Ok(ShaderSubject { name: name.to_owned(), variants, settings })
     }
+}
+
+/// The group of a shader with these parameters.
+fn build(shader: &Shader, choice: &[(String, String)]) -> Result<Group, GroupError> {
+    choice.iter().fold(shader.group(), |builder, (name, text)| builder.text(name, text)).build()
+}
+
+/// Surveys the usual parameters closely and each other value a little; gives what deserves a closer look.
+fn suspects(
+    shader: &Shader,
+    usual: &[(String, String)],
+    surveyed: &[Setting],
+    settings: Settings,
+    effort: &Effort,
+) -> Vec<Variant> {
+    let mut choices = vec![(usual.to_vec(), effort.places)];
+    for setting in surveyed {
+        for value in &setting.values {
+            let mut choice = usual.to_vec();
+            choice.retain(|(name, _)| *name != setting.name);
+            choice.push((setting.name.clone(), value.clone()));
+            choices.push((choice, effort.places / 8));
+        }
+    }
+    choices.truncate(MOST_GROUPS);
+    let look = |(choice, places): &(Vec<(String, String)>, usize)| {
+        // A value that does not fit a parameter is none of the shader's faults.
+        let group = build(shader, choice).ok()?;
+        let found = survey(&group, settings, *places);
+        Some(found.into_iter().map(|suspect| (suspect, choice.clone(), group.clone())).collect::<Vec<_>>())
+    };
+    let mut found: Vec<(Suspect, Vec<(String, String)>, Group)> =
+        choices.par_iter().filter_map(look).flatten().collect();
+    found.sort_by(|a, b| b.0.excess.total_cmp(&a.0.excess));
+    found.truncate(MOST_SUSPECTS);
+    let variant = |(suspect, choice, group): (Suspect, Vec<(String, String)>, Group)| Variant {
+        label: label(&choice, suspect.spot, suspect.spot != Spot::MIDDLE),
+        group,
+        spot: suspect.spot,
+        views: vec![suspect.view],
+    };
+    found.into_iter().map(variant).collect()
 }
 
 impl Subject for ShaderSubject {
@@ -87,7 +135,7 @@ impl Subject for ShaderSubject {
     }
 
     fn label(&self, variant: usize) -> String {
-        self.variants[variant].0.clone()
+        self.variants[variant].label.clone()
     }
 
     fn promises(&self, _variant: usize) -> Promises {
@@ -95,8 +143,12 @@ impl Subject for ShaderSubject {
         Promises { energy: Promise::Kept, reciprocity: Promise::Open, layered: true, lossless: false }
     }
 
+    fn views(&self, variant: usize) -> Vec<View> {
+        self.variants[variant].views.clone()
+    }
+
     fn scatterer(&self, variant: usize) -> Box<dyn Scatterer + '_> {
-        let (_, group, spot) = &self.variants[variant];
+        let Variant { group, spot, .. } = &self.variants[variant];
         if group.can_scatter() {
             Box::new(TreeScatterer::new(group.clone(), *spot, self.settings))
         } else {
@@ -110,67 +162,13 @@ fn label(choice: &[(String, String)], spot: Spot, many: bool) -> String {
     if many {
         parts.push(format!("u {}, v {}{}", spot.uv[0], spot.uv[1], if spot.back { ", from behind" } else { "" }));
     }
+    if let Some((name, _)) = RAY_TYPES.iter().find(|(_, bit)| *bit == spot.ray_type && spot.ray_type != 1) {
+        parts.push(format!("a {name} ray"));
+    }
+    if spot.width > 0.0 {
+        parts.push(format!("pixels {} wide", spot.width));
+    }
     if parts.is_empty() { "defaults".to_owned() } else { parts.join(", ") }
-}
-
-/// Splits what the user gave for a parameter into values.
-fn setting(shader: &Shader, name: &str, text: &str) -> Setting {
-    let variables = &shader.typed.variables;
-    let mut types = shader.typed.params.iter().map(|p| &variables[p.var.0 as usize]);
-    let each = types.find(|v| v.name == name).and_then(|v| components(&v.ty));
-    let parts: Vec<&str> = text.split(',').collect();
-    let values = match each {
-        Some(each) if parts.len().is_multiple_of(each) => parts.chunks(each).map(|value| value.join(",")).collect(),
-        _ => vec![text.to_owned()],
-    };
-    Setting { name: name.to_owned(), values }
-}
-
-/// How many parts of a text one value of a type takes; nothing for arrays and structs, which are given whole.
-fn components(ty: &Type) -> Option<usize> {
-    if ty.is_array() {
-        return None;
-    }
-    match ty.base()? {
-        Base::String => Some(1),
-        base => Some(base.components().max(1)),
-    }
-}
-
-/// The float parameters whose metadata tells their range.
-fn ranges(shader: &Shader) -> Vec<Setting> {
-    let typed = &shader.typed;
-    let mut out = Vec::new();
-    for param in &typed.params {
-        let variable = &typed.variables[param.var.0 as usize];
-        if param.output || variable.ty != Type::FLOAT {
-            continue;
-        }
-        let of = |name: &str| param.metadata.iter().find(|entry| entry.name == name).and_then(value);
-        let Some((low, high)) = RANGES.iter().find_map(|(low, high)| Some((of(low)?, of(high)?))) else { continue };
-        if low < high {
-            let at = |k: usize| low + (high - low) * k as f32 / (STEPS - 1) as f32;
-            out.push(Setting {
-                name: variable.name.clone(),
-                values: (0..STEPS).map(|k| format!("{}", at(k))).collect(),
-            });
-        }
-    }
-    out
-}
-
-/// The number that an entry of metadata gives.
-fn value(entry: &Metadata) -> Option<f32> {
-    fn number(expr: &Expr) -> Option<f32> {
-        match &expr.kind {
-            ExprKind::Int(x) => Some(*x as f32),
-            ExprKind::Float(x) => Some(*x),
-            ExprKind::Convert(inner) => number(inner),
-            ExprKind::Unary(UnaryOp::Neg, inner) => number(inner).map(|x| -x),
-            _ => None,
-        }
-    }
-    number(&entry.value).filter(|x| x.is_finite())
 }
 
 /// Places on the surface where the tree differs, as a few viewers see it.
@@ -185,7 +183,7 @@ fn spots(group: &Group) -> Vec<Spot> {
     let places: Vec<[f32; 2]> = std::iter::once(Spot::MIDDLE.uv).chain(places).collect();
     for back in [false, true] {
         for &uv in &places {
-            let spot = Spot { uv, back };
+            let spot = Spot { uv, back, ..Spot::MIDDLE };
             spot.points(&wo, &mut points);
             let tree = machine.shade(group, &points);
             let text: Vec<String> = (0..views.len()).map(|lane| tree_text(group.table(), tree, lane)).collect();

@@ -1,5 +1,6 @@
 //! What can be verified: anything that scatters light toward viewers, in one or more variants.
 
+use super::direction::View;
 use crate::closure::{Evaluation, Samples};
 use crate::math::columns::Column3;
 
@@ -55,6 +56,10 @@ pub trait Subject: Sync {
     fn label(&self, variant: usize) -> String;
     /// What a variant promises.
     fn promises(&self, variant: usize) -> Promises;
+    /// Directions of view that a variant is looked at from beside the usual ones.
+    fn views(&self, _variant: usize) -> Vec<View> {
+        Vec::new()
+    }
     /// A variant, ready to be looked at.
     fn scatterer(&self, variant: usize) -> Box<dyn Scatterer + '_>;
 }

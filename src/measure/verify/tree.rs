@@ -13,30 +13,45 @@ pub struct Spot {
     pub uv: [f32; 2],
     /// True when the surface is seen from its back.
     pub back: bool,
+    /// The bit of `raytype()` of whoever looks.
+    pub ray_type: i32,
+    /// The derivative of P and of u and v along the screen, on the surface; 0 where there is none.
+    pub width: f32,
 }
 
 impl Spot {
     /// The middle of the front.
-    pub const MIDDLE: Spot = Spot { uv: [0.5, 0.5], back: false };
+    pub const MIDDLE: Spot = Spot { uv: [0.5, 0.5], back: false, ray_type: 1, width: 0.0 };
 
     /// Points of this place, one a viewer.
     pub fn points(&self, wo: &Column3, points: &mut Points) {
-        let n = wo.len();
-        points.resize(n);
-        points.u.fill(self.uv[0]);
-        points.v.fill(self.uv[1]);
-        points.surface_area.fill(1.0);
-        points.ray_type.fill(1);
-        // Hosts turn the normals to the viewer, so the back looks like the front but for this mark.
-        points.backfacing.fill(i32::from(self.back));
-        for lane in 0..n {
-            points.p.set(lane, Vec3::new(self.uv[0], self.uv[1], 0.0));
-            points.i.set(lane, -wo.get(lane));
-            points.n.set(lane, Vec3::Z);
-            points.ng.set(lane, Vec3::Z);
-            points.dpdu.set(lane, Vec3::X);
-            points.dpdv.set(lane, Vec3::Y);
+        points.resize(wo.len());
+        for lane in 0..wo.len() {
+            self.point(wo.get(lane), points, lane);
         }
+    }
+
+    /// One point of this place, seen from `wo`.
+    pub fn point(&self, wo: Vec3, points: &mut Points, lane: usize) {
+        let [u, v] = self.uv;
+        (points.u[lane], points.v[lane]) = (u, v);
+        points.surface_area[lane] = 1.0;
+        points.ray_type[lane] = self.ray_type;
+        // Hosts turn the normals to the viewer, so the back looks like the front but for this mark.
+        points.backfacing[lane] = i32::from(self.back);
+        points.p.set(lane, Vec3::new(u, v, 0.0));
+        points.i.set(lane, -wo);
+        points.n.set(lane, Vec3::Z);
+        points.ng.set(lane, Vec3::Z);
+        points.dpdu.set(lane, Vec3::X);
+        points.dpdv.set(lane, Vec3::Y);
+        points.dpdx.set(lane, Vec3::X * self.width);
+        points.dpdy.set(lane, Vec3::Y * self.width);
+        (points.dudx[lane], points.dvdy[lane]) = (self.width, self.width);
+        (points.dudy[lane], points.dvdx[lane]) = (0.0, 0.0);
+        // The eye is one away.
+        points.didx.set(lane, (Vec3::X - wo * wo.x) * self.width);
+        points.didy.set(lane, (Vec3::Y - wo * wo.y) * self.width);
     }
 }
 
@@ -68,7 +83,8 @@ impl Scatterer for TreeScatterer {
     fn look(&mut self, wo: &Column3) {
         self.spot.points(wo, &mut self.points);
         let tree = self.machine.shade(&self.group, &self.points);
-        self.lobes.flatten(self.group.library(), tree, wo, &self.points.ng);
+        let Points { ng, backfacing, .. } = &self.points;
+        self.lobes.flatten_sides(self.group.library(), tree, wo, ng, backfacing);
         if let (Some(dropped), None) = (self.lobes.dropped().first(), &self.complaint) {
             let place = tree.site(dropped.node).map_or(String::new(), |site| format!("{}: ", self.group.place(site)));
             self.complaint = Some(format!("{place}`{}` has a parameter or weight that is no number", dropped.closure));

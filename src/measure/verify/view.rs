@@ -1,5 +1,6 @@
 //! One view of a variant: its cells, its integrals, and what its samples add up to.
 
+pub use super::direction::View;
 use super::draws::{Draw, Kind, draw};
 use super::effort::Effort;
 use super::subject::Scatterer;
@@ -14,23 +15,6 @@ use glam::Vec3;
 const SCOUTS: usize = 4096;
 /// Draws that measure lobes of one direction.
 const SINGLES: usize = 8192;
-
-/// A direction of view.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// Cosine to the normal.
-    pub cos: f64,
-    /// Azimuth from u, radians.
-    pub azimuth: f64,
-}
-
-impl View {
-    /// The unit direction to the viewer.
-    pub fn wo(&self) -> Vec3 {
-        let sin = ((1.0 - self.cos) * (1.0 + self.cos)).max(0.0).sqrt();
-        Vec3::new((sin * self.azimuth.cos()) as f32, (sin * self.azimuth.sin()) as f32, self.cos as f32)
-    }
-}
 
 /// Sums over many draws of one view.
 #[derive(Clone, Debug, Default)]

@@ -1,6 +1,7 @@
 //! The camera: where paths start.
 
 use crate::render::camera::directions;
+use crate::render::crossing::Crossing;
 use crate::render::path::Path;
 use crate::render::random;
 use crate::render::settings::HALVES;
@@ -29,6 +30,9 @@ pub fn start(world: &World, wave: &mut Wave, x: u32, y: u32, samples: Range<u32>
     let len = lanes.draws.seeds.len();
     let first = wave.paths.len() as u32;
     wave.active.extend(first..first + len as u32);
+    if world.plan.clear {
+        wave.crossings.resize(first as usize + len, Crossing::START);
+    }
     wave.positions.extend(across.iter().zip(down).map(|(x, y)| [*x, *y]));
     wave.paths.extend((0..len).map(|lane| {
         let direction = lanes.directions.get(lane);

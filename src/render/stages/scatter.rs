@@ -1,6 +1,8 @@
 //! Scattering: where each path of the batch goes on, if it does.
 
 use crate::closure::event;
+use crate::render::accel::Hit;
+use crate::render::crossing::{Crossing, MOST_PASSED};
 use crate::render::path::Path;
 use crate::render::random::{Use, dimension_set};
 use crate::render::segment::ray_type;
@@ -13,20 +15,16 @@ use glam::Vec3;
 const DIFFUSE_SPREAD: f32 = 1.0;
 const GLOSSY_SPREAD: f32 = 0.25;
 
-/// Beyond this bounce roulette ends even paths that lose nothing, or a white closed room would never be done.
-const DEEP: u32 = 64;
+/// Beyond this bounce roulette ends even paths that lose nothing, or a white closed room would never be done. What an albedo of
+/// .999 has left by then is less than 1e-4; sooner, the few paths that survive would weigh more and more.
+const DEEP: u32 = 10_000;
 
 /// Samples a direction for each path and sends on those that still carry something.
 pub fn scatter(world: &World, wave: &mut Wave) {
-    let Wave { paths, next, lanes, shading, dropped, .. } = wave;
-    let (bounce, material) = (lanes.bounce, lanes.material);
-    let roulette = bounce >= world.settings.rr_depth;
-    lanes.draws.draw(dimension_set(bounce, Use::Scatter), if roulette { 4 } else { 3 });
-    let random = &mut shading.random;
-    for (column, numbers) in [&mut random.x, &mut random.y, &mut random.z].into_iter().zip(&lanes.draws.numbers) {
-        column.copy_from_slice(numbers);
-    }
-    shading.sample();
+    draw(world, wave);
+    let Wave { paths, crossings, next, lanes, shading, dropped, .. } = wave;
+    let material = lanes.material;
+    let mut endless = false;
     for (lane, &i) in lanes.paths.iter().enumerate() {
         let samples = &shading.samples;
         let (event, pdf) = (samples.event[lane], samples.pdf[lane]);
@@ -44,14 +42,24 @@ pub fn scatter(world: &World, wave: &mut Wave) {
         if carried <= 0.0 {
             continue;
         }
-        if event == event::STRAIGHT && path.clear {
-            // Before roulette, which would only add noise to it.
-            path.alpha = 1.0 - throughput.element_sum() / 3.0;
-        } else {
-            path.clear = false;
+        // Straight through a surface that shadow rays pass as well is no bounce.
+        let passes = event == event::STRAIGHT && world.plan.materials[material].clear;
+        let mut bounces = lanes.bounce;
+        if let Some(crossing) = crossings.get_mut(i as usize) {
+            bounces = crossing.bounces;
+            endless |= passes && crossing.passed >= MOST_PASSED;
+            if if passes { crossing.passed >= MOST_PASSED } else { bounces >= world.settings.max_bounces } {
+                continue;
+            }
+            *crossing = crossed(crossing, passes, &path.segment.hit);
         }
-        if roulette {
-            let survival = carried.min(if bounce > DEEP { 0.95 } else { 1.0 });
+        path.clear &= event == event::STRAIGHT;
+        if path.clear {
+            path.alpha = 1.0 - (throughput.element_sum() / 3.0).min(1.0);
+        }
+        if bounces >= world.settings.rr_depth && !passes {
+            // A path that loses a factor a bounce survives with it, so its weight stays.
+            let survival = carried.min(if bounces > DEEP { 0.95 } else { 1.0 });
             if lanes.draws.numbers[3][lane] >= survival {
                 continue;
             }
@@ -60,12 +68,41 @@ pub fn scatter(world: &World, wave: &mut Wave) {
         path.throughput = throughput;
         let (p, ng) = (shading.points.p.get(lane), shading.points.ng.get(lane));
         let origin = world.accel.leave(p, ng, wi, path.segment.hit.primitive);
-        turn(path, origin, wi, event, pdf);
+        turn(path, origin, wi, event, if passes { path.pdf_solid_angle } else { pdf_of(event, pdf) });
         next.push(i);
+    }
+    if endless {
+        shading.warn(format!("a path that has passed {MOST_PASSED} clear surfaces ends there"));
     }
 }
 
-/// Sends a path on from `origin` toward `wi`, after an event of density `pdf`.
+/// Samples the lobes of the batch.
+fn draw(world: &World, wave: &mut Wave) {
+    let Wave { lanes, shading, .. } = wave;
+    // A path of a scene with clear surfaces may have fewer bounces behind it than the wave, never more.
+    let roulette = lanes.bounce >= world.settings.rr_depth;
+    lanes.draws.draw(dimension_set(lanes.bounce, Use::Scatter), if roulette { 4 } else { 3 });
+    let random = &mut shading.random;
+    for (column, numbers) in [&mut random.x, &mut random.y, &mut random.z].into_iter().zip(&lanes.draws.numbers) {
+        column.copy_from_slice(numbers);
+    }
+    shading.sample();
+}
+
+/// What a path remembers behind a surface that it passes, or that scatters it.
+fn crossed(before: &Crossing, passes: bool, hit: &Hit) -> Crossing {
+    match passes {
+        true => Crossing { passed: before.passed + 1, since: before.since + hit.t, ..*before },
+        false => Crossing { bounces: before.bounces + 1, last: hit.primitive, since: 0.0, ..*before },
+    }
+}
+
+/// The density of a direction as paths keep it: infinite where there was no choice.
+fn pdf_of(event: u8, pdf: f32) -> f32 {
+    if matches!(event, event::DIFFUSE | event::GLOSSY) { pdf } else { f32::INFINITY }
+}
+
+/// Sends a path on from `origin` toward `wi`, after an event that leaves it with density `pdf`.
 #[inline(always)]
 fn turn(path: &mut Path, origin: Vec3, wi: Vec3, event: u8, pdf: f32) {
     let segment = &mut path.segment;
@@ -73,8 +110,7 @@ fn turn(path: &mut Path, origin: Vec3, wi: Vec3, event: u8, pdf: f32) {
     segment.origin = origin;
     segment.direction = wi;
     segment.width += segment.spread * segment.hit.t;
-    let delta = !matches!(event, event::DIFFUSE | event::GLOSSY);
-    path.pdf_solid_angle = if delta { f32::INFINITY } else { pdf };
+    path.pdf_solid_angle = pdf;
     match event {
         event::DIFFUSE => (segment.ray_type, segment.spread) = (ray_type::DIFFUSE, segment.spread.max(DIFFUSE_SPREAD)),
         event::GLOSSY => (segment.ray_type, segment.spread) = (ray_type::GLOSSY, segment.spread.max(GLOSSY_SPREAD)),

@@ -7,7 +7,7 @@ use crate::render::world::World;
 
 /// Shades the batch and adds the emission that was not known before.
 pub fn shade(world: &World, wave: &mut Wave) {
-    let Wave { paths, lanes, shading, dropped, .. } = wave;
+    let Wave { paths, crossings, lanes, shading, dropped, .. } = wave;
     let (group, plan) = world.material(lanes.material);
     shading.resize(lanes.paths.len());
     let segments = lanes.paths.iter().map(|&i| &paths[i as usize].segment);
@@ -17,11 +17,12 @@ pub fn shade(world: &World, wave: &mut Wave) {
         let path = &mut paths[i as usize];
         if path.clear {
             // Of what clear surfaces have let through, the hole lets the background show.
-            path.alpha = 1.0 - path.through() * shading.holdout()[lane].clamp(0.0, 1.0);
+            path.alpha = 1.0 - path.through().min(1.0) * shading.holdout()[lane].clamp(0.0, 1.0);
         }
         // Constant emission was added when the hits were sorted.
         if plan.emits && world.emission_of(path.segment.hit.primitive).is_none() {
-            found_on_surface(world, path, shading.emission().get(lane), lanes.material, dropped);
+            let radiance = shading.emission().get(lane);
+            found_on_surface(world, path, crossings.get(i as usize), radiance, lanes.material, dropped);
         }
     }
 }

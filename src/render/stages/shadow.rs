@@ -5,6 +5,7 @@ use crate::render::path::ShadowRay;
 use crate::render::points::{fill, fill_sky};
 use crate::render::segment::ray_type;
 use crate::render::sky::Sky;
+use crate::render::through::trace_through;
 use crate::render::wave::{ShadowQueue, Wave};
 use crate::render::world::World;
 
@@ -49,11 +50,15 @@ pub fn trace_shadows(world: &World, wave: &mut Wave) {
 
 /// Adds what the rays that get through bring, where that is known; the others are listed as `reached`.
 fn trace_queue(world: &World, wave: &mut Wave, queue: &mut ShadowQueue) {
-    let Wave { paths, dropped, traced, .. } = wave;
+    queue.clear.clear();
+    if world.plan.clear {
+        trace_through(world, wave, queue);
+    } else {
+        wave.traced += queue.rays.len() as u64;
+        world.accel.answer_any(&mut Shadows { rays: &queue.rays, clear: &mut queue.clear });
+    }
+    let Wave { paths, dropped, .. } = wave;
     let ShadowQueue { rays, clear, reached, .. } = queue;
-    *traced += rays.len() as u64;
-    clear.clear();
-    world.accel.answer_any(&mut Shadows { rays, clear });
     reached.clear();
     for &i in clear.iter() {
         let shadow = &rays[i as usize];

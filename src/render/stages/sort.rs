@@ -9,8 +9,7 @@ use crate::render::world::World;
 ///
 /// Emission that is one constant is added here, since no shader has to be run for it; what ends at such a hit is left out.
 pub fn sort(world: &World, wave: &mut Wave, bounce: u32) {
-    let Wave { paths, active, sorted, dropped, .. } = wave;
-    let last = bounce >= world.settings.max_bounces;
+    let Wave { paths, crossings, active, sorted, dropped, .. } = wave;
     sorted.starts.clear();
     sorted.starts.resize(world.scene.materials.len() + 1, 0);
     sorted.unsorted.clear();
@@ -26,9 +25,11 @@ pub fn sort(world: &World, wave: &mut Wave, bounce: u32) {
             path.alpha = 1.0;
         }
         if let Some(emission) = world.emission_of(primitive).filter(|_| world.settings.show_globals == 0) {
-            found_on_surface(world, path, emission, material, dropped);
+            let crossing = crossings.get(i as usize);
+            let last = crossing.map_or(bounce, |c| c.bounces) >= world.settings.max_bounces;
+            found_on_surface(world, path, crossing, emission, material, dropped);
             let plan = &world.plan.materials[material];
-            if (last || !plan.scatters) && !(plan.holds_out && path.clear) {
+            if (last && !plan.clear || !plan.scatters) && !(plan.holds_out && path.clear) {
                 continue;
             }
         }

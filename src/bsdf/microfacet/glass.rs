@@ -1,0 +1,135 @@
+//! What single scattering leaves of white light at a rough boundary that reflects and transmits: what its lobe is divided by
+//! to lose nothing.
+//!
+//! Source: Turquin 2019, "Practical multiple scattering compensation for microfacet models": the whole lobe over its own white
+//! albedo. That depends on the viewer alone, so the lobe is not reciprocal any more.
+//!
+//! The tables hold the part of what a mirror of the same facets leaves, which [`WhiteTable`] knows closely: beyond the critical
+//! angle that is 1, and elsewhere smoother than the albedo itself.
+//!
+//! Decision (2026-11-29): tables over width and cosine, one for each of some indices, made when a scene asks for their
+//! neighbourhood, because a scene has a few indices and one table takes some 70 ms; instead of one over all indices.
+
+use super::albedo::{around, cosine_at, cosine_axis, cubic, width_at, width_axis};
+use super::distribution::{Distribution, Widths};
+use super::geometry::{Facets, Geometry};
+use super::ggx::{Ggx, sample_visible};
+use super::white::WhiteTable;
+use super::{Beckmann, Blinn};
+use crate::bsdf::fresnel::{dielectric, refracted};
+use crate::bsdf::power::log2;
+use glam::Vec3;
+use std::f32::consts::LN_2;
+use std::sync::OnceLock;
+
+/// Widths, cosines and indices of the tables.
+const WIDTHS: usize = 14;
+const COSINES: usize = 24;
+const INDICES: usize = 65;
+/// The largest |ln eta|; beyond it the value there stands.
+const MOST: f32 = 2.0;
+/// The least width of the tables; what narrower facets lose is no part of theirs.
+const LEAST: f32 = 0.01;
+/// Facets that are averaged. Near total reflection a grid of half as many is 2e-3 off.
+const FACETS: usize = 4096;
+
+/// One index of refraction.
+type Table = Vec<f32>;
+
+/// Place of an index on its axis, 0..1; densest around 1, where the sides differ most.
+fn index_axis(eta: f32) -> f32 {
+    let x = (log2(eta.max(1e-6)) * LN_2).clamp(-MOST, MOST);
+    0.5 + 0.5 * x.signum() * (x.abs() / MOST).sqrt()
+}
+
+fn index_at(place: f32) -> f32 {
+    let x = 2.0 * place - 1.0;
+    // At 1 a boundary is none; an index close to it stands for the limit.
+    if x == 0.0 { 1.0 + 1e-4 } else { (x.signum() * MOST * x * x).exp() }
+}
+
+/// Place of a width on the axis of the tables, 0..1.
+fn narrow_axis(alpha: f32) -> f32 {
+    let least = width_axis(LEAST);
+    ((width_axis(alpha) - least) / (1.0 - least)).max(0.0)
+}
+
+fn table(facets: Facets, geometry: Geometry, index: usize) -> &'static Table {
+    static TABLES: [[[OnceLock<Table>; INDICES]; Geometry::ALL.len()]; Facets::COUNT] =
+        [const { [const { [const { OnceLock::new() }; INDICES] }; Geometry::ALL.len()] }; Facets::COUNT];
+    TABLES[facets as usize][geometry as usize][index].get_or_init(|| {
+        let eta = index_at(index as f32 / (INDICES - 1) as f32);
+        match facets {
+            Facets::Ggx => build::<Ggx>(geometry, eta),
+            Facets::Beckmann => build::<Beckmann>(geometry, eta),
+            Facets::Blinn => build::<Blinn>(geometry, eta),
+        }
+    })
+}
+
+fn build<D: Distribution>(geometry: Geometry, eta: f32) -> Table {
+    let mut out = Vec::with_capacity(WIDTHS * COSINES);
+    for i in 0..WIDTHS {
+        let least = width_axis(LEAST);
+        let alpha = width_at(least + (1.0 - least) * i as f32 / (WIDTHS - 1) as f32);
+        for j in 0..COSINES {
+            let cos = cosine_at(j as f32 / (COSINES - 1) as f32, alpha);
+            out.push(white::<D>(geometry, [alpha, cos], eta));
+        }
+    }
+    out
+}
+
+/// What leaves a boundary of one width toward one cosine over what leaves a mirror, as means over visible facets.
+fn white<D: Distribution>(geometry: Geometry, [alpha, cos]: [f32; 2], eta: f32) -> f32 {
+    let widths = Widths { x: alpha, y: alpha };
+    let (d, ggx) = (D::new(widths), Ggx(widths));
+    let wo = Vec3::new(((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt(), 0.0, cos);
+    let lambda_o = f64::from(d.lambda(wo));
+    let masking = 1.0 + f64::from(ggx.lambda(wo));
+    let (mut all, mut mirror) = (0.0, 0.0);
+    for k in 0..FACETS {
+        // Roberts's sequence fills the square more evenly than a grid does along curved edges.
+        let at = |step: f64| (0.5 + k as f64 * step).fract() as f32;
+        let m = sample_visible(wo, widths, at(0.754_877_666_246_692_8), at(0.569_840_290_998_053_2));
+        let om = wo.dot(m);
+        if om <= 0.0 {
+            continue;
+        }
+        let ratio = masking * f64::from(d.d(m) / ggx.d(m).max(1e-30));
+        let part = |wi: Vec3| {
+            let lambdas = [lambda_o, f64::from(d.lambda(wi))];
+            // A facet's cosine to the light stands to that to the viewer as VGroove needs it; the others do not read it.
+            let cosines = [f64::from(cos), f64::from(wi.z.abs() * om / wi.dot(m).abs().max(1e-20))];
+            ratio * geometry.part(lambdas, cosines, f64::from(om), f64::from(m.z))
+        };
+        let reflected = f64::from(dielectric(om, eta));
+        let (up, down) = (m * (2.0 * om) - wo, refracted(wo, m, eta));
+        let up = if up.z > 0.0 { part(up) } else { 0.0 };
+        mirror += up;
+        all += reflected * up;
+        all += if down.z < 0.0 { (1.0 - reflected) * part(down) } else { 0.0 };
+    }
+    (all / mirror.max(1e-9)).min(100.0) as f32
+}
+
+/// What single scattering leaves of white light at a dielectric boundary, both halves together.
+///
+/// Domain: alpha 1e-3..1, cosine 0..1, index (transmitted over incident) > 0. Gives: 0..1.
+pub fn left(facets: Facets, geometry: Geometry, alpha: f32, cos: f32, eta: f32) -> f32 {
+    let at = index_axis(eta) * (INDICES - 1) as f32;
+    let first = (at as usize).min(INDICES - 2);
+    let by_index = [1.0 - (at - first as f32), at - first as f32];
+    let (row, by_row) = cubic(narrow_axis(alpha), WIDTHS);
+    let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
+    let mut sum = 0.0;
+    for (index, a) in [first, first + 1].into_iter().zip(by_index).filter(|(_, a)| *a != 0.0) {
+        let table = table(facets, geometry, index);
+        for (row, b) in around(row, WIDTHS).into_iter().zip(by_row) {
+            for (column, c) in around(column, COSINES).into_iter().zip(by_column) {
+                sum += a * b * c * table[row * COSINES + column];
+            }
+        }
+    }
+    (sum * (1.0 - WhiteTable::of(facets, geometry).lost(alpha, cos))).clamp(1e-2, 1.0)
+}

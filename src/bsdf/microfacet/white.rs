@@ -1,0 +1,69 @@
+//! What single scattering leaves of white light at facets that reflect all of it: the albedo of a rough mirror.
+//!
+//! The rest bounces between the facets. [`super::between`] gives it back.
+
+use super::albedo::{COSINES, FacetTable, WIDTHS, around, cosine_axis, cubic, width_at, width_axis};
+use super::geometry::{Facets, Geometry};
+use super::{Beckmann, Blinn, Ggx};
+use crate::math::quadrature::gauss_legendre;
+use std::sync::OnceLock;
+
+/// 1 - E of a distribution under a shadowing term, over width and cosine, and its cosine-weighted mean over width.
+#[derive(Debug)]
+pub struct WhiteTable {
+    lost: Vec<f32>,
+    mean: [f32; WIDTHS],
+}
+
+impl WhiteTable {
+    /// The table of a distribution under a shadowing term, made when it is first asked for from that of all Fresnel terms.
+    pub fn of(facets: Facets, geometry: Geometry) -> &'static WhiteTable {
+        static TABLES: [[OnceLock<WhiteTable>; Geometry::ALL.len()]; Facets::COUNT] =
+            [const { [const { OnceLock::new() }; Geometry::ALL.len()] }; Facets::COUNT];
+        TABLES[facets as usize][geometry as usize].get_or_init(|| {
+            WhiteTable::new(match facets {
+                Facets::Ggx => FacetTable::of::<Ggx>(geometry),
+                Facets::Beckmann => FacetTable::of::<Beckmann>(geometry),
+                Facets::Blinn => FacetTable::of::<Blinn>(geometry),
+            })
+        })
+    }
+
+    fn new(table: &FacetTable) -> Self {
+        let lost = table.mirrors().map(|e| 1.0 - e).collect();
+        let mut white = WhiteTable { lost, mean: [0.0; WIDTHS] };
+        // In the cube root of the cosine the albedo is smooth down to the horizon.
+        let rule = gauss_legendre(32, 0.0, 1.0);
+        for i in 0..WIDTHS {
+            let alpha = width_at(i as f32 / (WIDTHS - 1) as f32);
+            let at = |t: f64| f64::from(white.lost(alpha, (t * t * t) as f32)) * 6.0 * t.powi(5);
+            white.mean[i] = rule.iter().map(|node| node.weight * at(node.x)).sum::<f64>() as f32;
+        }
+        white
+    }
+
+    /// 1 - E at a cosine.
+    ///
+    /// Domain: alpha 1e-3..1, cosine 0..1. Gives: 0..1, within 1e-3.
+    #[inline(always)]
+    pub fn lost(&self, alpha: f32, cos: f32) -> f32 {
+        let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
+        let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
+        let (rows, columns) = (around(row, WIDTHS), around(column, COSINES));
+        let mut sum = 0.0;
+        for (row, weight) in rows.into_iter().zip(by_row) {
+            let line = &self.lost[row * COSINES..(row + 1) * COSINES];
+            let [a, b, c, d] = columns.map(|column| line[column]);
+            sum += weight * (by_column[0] * a + by_column[1] * b + by_column[2] * c + by_column[3] * d);
+        }
+        sum.clamp(0.0, 1.0)
+    }
+
+    /// The mean of 1 - E over the hemisphere, weighted by the cosine.
+    #[inline(always)]
+    pub fn mean_lost(&self, alpha: f32) -> f32 {
+        let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
+        let [a, b, c, d] = around(row, WIDTHS).map(|row| self.mean[row]);
+        (by_row[0] * a + by_row[1] * b + by_row[2] * c + by_row[3] * d).clamp(1e-7, 1.0)
+    }
+}

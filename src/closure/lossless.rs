@@ -1,0 +1,203 @@
+//! Layering without loss: a scale for each lobe of the base and each color.
+//!
+//! What a layer lets through is T(w) = 1 - t a(w), t the tint in one color. A reciprocal scale k(i, o) of a lobe f loses nothing
+//! when the integral of k f cos is T(o) times the lobe's albedo. Over a Lambertian or translucent lobe that is k = T(i) T(o) over
+//! the mean of T (Kelemen and Szirmay-Kalos 2001), and so it is nearly over the other diffuse models, which are left a
+//! per cent less lest they gain; over a mirror it is the
+//! T of both directions, which are alike, and min(T(i), T(o)) is that there and safe over everything else. Layers around
+//! each other multiply, and of a diffuse lobe the mean is that of their product.
+//!
+//! Decision (2026-11-29): rough lobes take the smaller T, which loses some light, because their own scale needs a table for
+//! each pair of top and base; instead of a scale that could gain.
+
+use super::batch::MOST_SCALE;
+use super::layering::{Layer, Layers, Top, Toward, top_albedo};
+use super::lobe_kind::LobeKind;
+use super::lobe_models::{LobeModel, LobeModels, Values};
+use super::store::NONE;
+use crate::math::quadrature::GAUSS_8;
+use glam::Vec3;
+
+/// Diffuse lobes that lean in some direction would gain up to half a per cent at some views by the scale of a Lambertian one.
+const LEANING: f32 = 0.99;
+
+impl Layers {
+    /// The innermost lossless layer at or around one.
+    fn lossless_from(&self, mut layer: u32) -> Option<u32> {
+        while let Some(at) = self.list.get(layer as usize) {
+            if at.lossless() {
+                return Some(layer);
+            }
+            layer = at.parent;
+        }
+        None
+    }
+
+    /// Is a lobe under this layer scaled by itself and by color?
+    pub fn scales_by_lobe(&self, layer: u32) -> bool {
+        self.by_lobe && self.lossless_from(layer).is_some()
+    }
+
+    /// Computes the means that lossless layers divide by.
+    pub fn prepare_lossless(&mut self, models: &LobeModels) {
+        if !self.by_lobe {
+            return;
+        }
+        let n = models.lanes;
+        self.passed.clear();
+        self.passed.resize(3 * n * self.list.len(), 0.0);
+        let alone = |layer: &Layer| layer.lossless() && self.lossless_from(layer.parent).is_none();
+        let simple: Vec<bool> =
+            self.list.iter().map(|layer| alone(layer) && matches!(layer.top, Top::Lobe(_))).collect();
+        for index in (0..self.list.len()).filter(|&index| simple[index]) {
+            self.pass_alone(models, index);
+        }
+        if self.list.iter().zip(&simple).any(|(layer, simple)| layer.lossless() && !simple) {
+            for (x, weight) in GAUSS_8 {
+                for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
+                    self.add_passed(models, &simple, t * t * t, 3.0 * weight * t.powi(5));
+                }
+            }
+        }
+    }
+
+    /// The mean of what one lobe lets through by itself.
+    fn pass_alone(&mut self, models: &LobeModels, index: usize) {
+        let n = models.lanes;
+        let layer = self.list[index];
+        let Top::Lobe(top) = layer.top else { return };
+        mean_albedo(models, &models.list[top as usize], &mut self.scratch);
+        for (c, tint) in layer.tints.into_iter().enumerate() {
+            let tint = models.column(tint);
+            let out = &mut self.passed[(3 * index + c) * n..(3 * index + c + 1) * n];
+            for i in 0..n {
+                out[i] = 1.0 - tint[i] * self.scratch[i];
+            }
+        }
+    }
+
+    /// Adds one cosine to the means of the products of lossless layers in each other, and of those whose top is a tree.
+    fn add_passed(&mut self, models: &LobeModels, simple: &[bool], cos: f32, weight: f32) {
+        let n = models.lanes;
+        if !self.steps.is_empty() {
+            self.run_steps(models, Toward::Fixed(cos));
+        }
+        let mut products = vec![1.0; 3 * n * self.list.len()];
+        for index in 0..self.list.len() {
+            let layer = self.list[index];
+            if !layer.lossless() {
+                continue;
+            }
+            top_albedo(&layer, None, models, Toward::Fixed(cos), &self.values, &mut self.scratch);
+            let outer = self.lossless_from(layer.parent).map(|outer| outer as usize);
+            for (c, tint) in layer.tints.into_iter().enumerate() {
+                let tint = models.column(tint);
+                for i in 0..n {
+                    let around = outer.map_or(1.0, |outer| products[(3 * outer + c) * n + i]);
+                    let product = around * (1.0 - tint[i] * self.scratch[i]).clamp(0.0, 1.0);
+                    products[(3 * index + c) * n + i] = product;
+                    self.passed[(3 * index + c) * n + i] += if simple[index] { 0.0 } else { weight * product };
+                }
+            }
+        }
+    }
+
+    /// Multiplies the three columns of a lobe's weight by what all layers over it let through for the light of the last
+    /// evaluation.
+    pub fn scale_lobe(&self, models: &LobeModels, layer: u32, kind: LobeKind, weight: &[f32], out: &mut Vec<f32>) {
+        let (n, diffuse) = (models.lanes, kind.is_even());
+        out.clear();
+        out.extend_from_slice(&weight[..3 * n]);
+        let innermost = self.lossless_from(layer);
+        let mut at = layer;
+        while let Some(here) = self.list.get(at as usize) {
+            let index = at as usize;
+            if here.lossless() {
+                let mean = if diffuse && innermost == Some(at) { Some(&self.passed[3 * index * n..]) } else { None };
+                self.scale_lossless(models, index, diffuse, mean, out);
+            } else {
+                self.scale_plain(index, n, out);
+            }
+            at = here.parent;
+        }
+        if diffuse && !kind.is_flat() {
+            out.iter_mut().for_each(|value| *value *= LEANING);
+        }
+    }
+
+    /// What all layers over a lobe that is not diffuse let through in one lane, for the light of the last evaluation.
+    pub fn smaller_part(&self, models: &LobeModels, layer: u32, lane: usize) -> Vec3 {
+        let n = models.lanes;
+        let (mut out, mut at) = (Vec3::ONE, layer);
+        while let Some(here) = self.list.get(at as usize) {
+            let (index, parent) = (at as usize, here.parent);
+            out *= if here.lossless() {
+                let part = |c: usize| {
+                    let (t, k) = (models.column(here.tints[c])[lane], index * n + lane);
+                    (1.0 - t * self.top_i[k].max(self.top_o[k])).clamp(0.0, 1.0)
+                };
+                Vec3::new(part(0), part(1), part(2))
+            } else {
+                let around = if parent == NONE { 1.0 } else { self.scales[parent as usize * n + lane] };
+                Vec3::splat(if around > 0.0 { self.scales[index * n + lane] / around } else { 0.0 })
+            };
+            at = parent;
+        }
+        out
+    }
+
+    /// One lossless layer's part of [`Layers::scale_lobe`]; the innermost one divides by the mean of all.
+    fn scale_lossless(&self, models: &LobeModels, index: usize, diffuse: bool, mean: Option<&[f32]>, out: &mut [f32]) {
+        let n = models.lanes;
+        let (top_i, top_o) = (&self.top_i[index * n..(index + 1) * n], &self.top_o[index * n..(index + 1) * n]);
+        for (c, tint) in self.list[index].tints.into_iter().enumerate() {
+            let (tint, out) = (models.column(tint), &mut out[c * n..(c + 1) * n]);
+            for i in 0..n {
+                let (t_i, t_o) =
+                    ((1.0 - tint[i] * top_i[i]).clamp(0.0, 1.0), (1.0 - tint[i] * top_o[i]).clamp(0.0, 1.0));
+                out[i] *= if diffuse { t_i * t_o } else { t_i.min(t_o) };
+            }
+            let Some(mean) = mean else { continue };
+            for (value, mean) in out.iter_mut().zip(&mean[c * n..(c + 1) * n]) {
+                *value *= (1.0 / mean.max(1e-6)).min(MOST_SCALE);
+            }
+        }
+    }
+
+    /// The part of a layer of another rule: its scale without that of the layers around it.
+    fn scale_plain(&self, index: usize, n: usize, out: &mut [f32]) {
+        let parent = self.list[index].parent;
+        for i in 0..n {
+            let whole = self.scales[index * n + i];
+            let around = if parent == NONE { 1.0 } else { self.scales[parent as usize * n + i] };
+            // What lets nothing through lets nothing through in a layer either.
+            let own = if around > 0.0 { whole / around } else { 0.0 };
+            for c in 0..3 {
+                out[c * n + i] *= own;
+            }
+        }
+    }
+}
+
+/// The mean albedo of a lobe on top; one lane is enough for a lobe that is the same in all.
+fn mean_albedo(models: &LobeModels, model: &LobeModel, out: &mut [f32]) {
+    let Some(loops) = model.kind.loops() else {
+        let mut sum = vec![0.0; out.len()];
+        let mut here = vec![0.0; out.len()];
+        for (x, weight) in GAUSS_8 {
+            for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
+                super::layering::model_albedo(models, model, Toward::Fixed(t * t * t), &mut here);
+                sum.iter_mut().zip(&here).for_each(|(sum, a)| *sum += 3.0 * weight * t.powi(5) * a);
+            }
+        }
+        out.copy_from_slice(&sum);
+        return;
+    };
+    let same = matches!(model.params, Values::Uniform(_));
+    let lanes = if same { 1.min(out.len()) } else { out.len() };
+    (loops.average)(models.numbers(model), model.choice, &mut out[..lanes]);
+    if same && !out.is_empty() {
+        let first = out[0];
+        out.fill(first);
+    }
+}
