@@ -57,6 +57,8 @@ pub(super) struct Loops {
     pub sheen: Option<bool>,
     /// See [`Scatter::TOP`].
     pub top: bool,
+    /// True when some of its light leaves on the viewer's side.
+    pub reflects: bool,
     /// What the viewer decides.
     pub view: fn(Numbers, Choice, Triples, &mut [f32]),
     /// f cos and density, added to three columns and one.
@@ -160,6 +162,7 @@ impl<M: Scatter> OfModel<M> {
             views: M::VIEW,
             sheen: M::SHEEN,
             top: M::TOP,
+            reflects: !matches!(M::SIDE, Side::Other),
             view: view::<M>,
             evaluate: evaluate::<M>,
             sample: sample::<M>,

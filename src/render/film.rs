@@ -2,7 +2,7 @@
 //!
 //! Decision (2026-11-22): a sample is drawn evenly in its own pixel and weighed by the tent into the two by two pixels
 //! whose centres are near, instead of being drawn by the tent for one pixel, because the picture is the same and each
-//! pixel hears 2.25 times as many samples: the mean square error of `shaders/scenes/figure1.xml` (320 x 128, 64
+//! pixel hears 2.25 times as many samples: the mean square error of `shaders/scenes/spheres.xml` (320 x 128, 64
 //! samples, half the mean square difference of three seeds) falls from 1.32e-5 to 6.9e-6. Neighbours then share noise, as in every renderer that splats.
 //!
 //! A tile's sums are taken by the thread that renders it and given back, and every sum adds up sample after sample, within
