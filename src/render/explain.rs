@@ -8,7 +8,7 @@ use super::accel::NOTHING;
 use super::host::host;
 use super::lanes::Draws;
 use super::light::{LightLanes, Lights};
-use super::plan::{Needs, Plan};
+use super::plan::{Needs, Plan, table_side};
 use super::points::{fill, fill_sky};
 use super::probe::probe;
 use super::segment::Segment;
@@ -189,10 +189,10 @@ fn light_savings(scene: &Scene, plan: &Plan, settings: &Settings, savings: &mut 
         savings.push(Saving { what: "sampling of lights".into(), cost });
     }
     if plan.background_table == 0 {
-        let side = scene.background.map_or(0, |b| b.resolution.max(32));
+        let side = scene.background.map_or(0, |b| table_side(b.resolution));
         let cost = match background_cost(scene, settings) {
             Some(ns) => format!(
-                "{:.2} ms for a table of {side} x {side}, and one evaluation of the lobes and one shadow ray a hit",
+                "{:.1} ms for a look in {side} x {side} directions, and one evaluation of the lobes and one shadow ray a hit",
                 ns * f64::from(side * side) * 1e-6
             ),
             None => "one evaluation of the lobes and one shadow ray a hit".into(),

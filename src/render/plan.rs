@@ -1,6 +1,7 @@
 //! What a scene needs: decided once, before rendering, so that nothing else is computed.
 
 use super::settings::{LightStrategy, Settings};
+use super::sky::{LEAST_SIDE, MOST_SIDE};
 use crate::exec::Group;
 use crate::lang::globals::Global;
 use crate::scene::Scene;
@@ -50,6 +51,11 @@ pub fn same_all_over(group: &Group) -> bool {
     !group.nests() && !group.varies_on_object()
 }
 
+/// Directions a side in which a background is looked at, where the scene asks for `resolution`.
+pub fn table_side(resolution: u32) -> u32 {
+    resolution.clamp(LEAST_SIDE, MOST_SIDE).next_power_of_two()
+}
+
 /// What one material takes part in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MaterialPlan {
@@ -79,7 +85,7 @@ pub struct Plan {
     pub lights: usize,
     /// The background's radiance is one constant.
     pub constant_background: bool,
-    /// Side of the background's importance table; 0 when none is needed.
+    /// Directions a side in which the background is looked at for its importance table, a power of two; 0 when none is needed.
     pub background_table: u32,
 }
 
@@ -107,7 +113,7 @@ impl Plan {
         let constant = background.is_none_or(|(_, g)| same_all_over(g) || !g.can_emit());
         let background_table = match background {
             // A constant sky is what scattering samples already reach best; sampling it as well only adds noise.
-            Some((b, _)) if sampling && !constant && b.resolution > 0 => b.resolution.max(32),
+            Some((b, _)) if sampling && !constant && b.resolution > 0 => table_side(b.resolution),
             _ => 0,
         };
         let cones = materials.iter().any(|m| m.needs.any_derivative());
@@ -137,7 +143,7 @@ impl fmt::Display for Plan {
                     "reached by scattering alone"
                 )
                 .to_owned(),
-                n => format!("varies, sampled by a table of {n} x {n}"),
+                n => format!("varies, sampled by its brightness in {n} x {n} directions and closer at edges"),
             }
         )?;
         writeln!(

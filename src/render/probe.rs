@@ -3,7 +3,7 @@
 use super::accel::Hit;
 use super::form::Form;
 use super::segment::{Segment, ray_type};
-use super::sky::SkyTable;
+use super::sky;
 use crate::scene::{Geometry, Shape};
 use glam::Vec3;
 
@@ -16,7 +16,7 @@ pub fn probe(geometry: &Geometry, primitive: u32, x: f32, y: f32) -> Segment {
     };
     let (mut p, mut n) = Form::new(shape).meet(Vec3::ZERO, Vec3::NEG_Y, [1.0, u, v]);
     if let Shape::Sphere { center, radius } = *shape {
-        n = SkyTable::direction(1, x, y);
+        n = sky::direction(x, y);
         p = center + radius * n;
     }
     let hit = Hit { t: 1.0, primitive, u, v };

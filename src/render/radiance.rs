@@ -1,17 +1,18 @@
 //! Radiance that is known before a ray is traced: of objects and backgrounds that shine alike all over, and estimates of
 //! the others.
 
-use super::plan::{Plan, same_all_over};
+use super::plan::{Needs, Plan, same_all_over};
 use super::points::{fill, fill_sky};
 use super::probe::probe;
 use super::segment::{Segment, ray_type};
-use super::settings::Settings;
+use super::settings::{LightStrategy, Settings};
 use super::shading::Shading;
-use super::sky::{Sky, SkyTable};
+use super::sky::{Brightness, Sky, SkyTable, direction};
 use crate::exec::{Group, Host, MAX_LANES};
 use crate::scene::Scene;
 use glam::Vec3;
 use rayon::prelude::*;
+use std::f32::consts::PI;
 use std::sync::Arc;
 
 /// The radiance of each object, where it is one constant; zero for objects that do not emit.
@@ -99,27 +100,46 @@ pub fn sky(scene: &Scene, plan: &Plan, settings: &Settings, shading: &mut Shadin
         let radiance = shading.emission().get(0);
         return if radiance.is_finite() { Sky::Constant(radiance) } else { Sky::Shader { material, table: None } };
     }
-    let side = plan.background_table as usize;
-    let table = if side == 0 { None } else { SkyTable::new(side, &sky_brightness(group, side, settings, host)) };
+    let table = match plan.background_table as usize {
+        0 => None,
+        side => {
+            let needs = &plan.materials[material].needs;
+            let look = |side: usize, cells: &[[u32; 2]]| brightness(group, needs, side, cells, settings, host);
+            SkyTable::new(&Brightness::new(side, &look), settings.lights == LightStrategy::Combined)
+        }
+    };
     Sky::Shader { material, table }
 }
 
-/// The brightest channel of the background at the centre of each cell of its table.
-fn sky_brightness(group: &Group, side: usize, settings: &Settings, host: &Arc<dyn Host>) -> Vec<f32> {
-    let mut brightness = vec![0.0; side * side];
-    brightness.par_chunks_mut(side).enumerate().for_each_init(
+/// The brightest channel of the background in the middle of cells of a grid of `side` cells a side, as shadow rays see it; whatever
+/// is filtered there is filtered over the cell.
+fn brightness(
+    group: &Group,
+    needs: &Needs,
+    side: usize,
+    cells: &[[u32; 2]],
+    settings: &Settings,
+    host: &Arc<dyn Host>,
+) -> Vec<f32> {
+    let mut brightness = vec![0.0; cells.len()];
+    let width = (4.0 * PI).sqrt() / side as f32;
+    let at = |a: u32| (a as f32 + 0.5) / side as f32;
+    brightness.par_chunks_mut(MAX_LANES).zip(cells.par_chunks(MAX_LANES)).for_each_init(
         || Shading::new(settings.closure, host.clone()),
-        |shading, (y, row)| {
-            for (chunk, cells) in row.chunks_mut(MAX_LANES).enumerate() {
-                shading.resize(cells.len());
-                for lane in 0..cells.len() {
-                    let x = (chunk * MAX_LANES + lane) as f32 + 0.5;
-                    fill_sky(&mut shading.points, lane, SkyTable::direction(side, x, y as f32 + 0.5), 0);
+        |shading, (brightness, cells)| {
+            shading.resize(cells.len());
+            for (lane, [x, y]) in cells.iter().enumerate() {
+                let direction = direction(at(*x), at(*y));
+                fill_sky(&mut shading.points, lane, direction, ray_type::SHADOW);
+                if needs.direction_derivatives {
+                    let (dx, dy) = direction.any_orthonormal_pair();
+                    shading.points.didx.set(lane, dx * width);
+                    shading.points.didy.set(lane, dy * width);
                 }
-                shading.shade(group);
-                for (lane, cell) in cells.iter_mut().enumerate() {
-                    *cell = shading.emission().get(lane).max_element();
-                }
+            }
+            shading.shade(group);
+            for (lane, cell) in brightness.iter_mut().enumerate() {
+                *cell = shading.emission().get(lane).max_element();
             }
         },
     );

@@ -41,7 +41,7 @@ pub struct Material {
 pub struct Background {
     /// Index of its material.
     pub material: u32,
-    /// Side of the importance table; 0 asks for none.
+    /// The least number of cells a side of the importance table; a renderer may take more, and 0 asks for no table.
     pub resolution: u32,
 }
 

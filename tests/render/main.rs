@@ -14,4 +14,5 @@ mod normals;
 mod rays;
 mod rounds;
 mod shaders;
+mod sky;
 mod speed;
