@@ -173,6 +173,17 @@ fn what_is_wrong_names_its_line() {
 }
 
 #[test]
+fn normals_that_faces_name_and_nobody_gives_are_left_out() {
+    let scene = mesh(format!("{SQUARE}f 1//1 2//2 3//3\n").as_bytes());
+    assert_eq!(scene.geometry.primitives[0].normals, Primitive::NONE);
+    assert!(
+        scene.warnings[0].contains("m.obj:5: warning: faces name `vn`, of which there are none"),
+        "{:?}",
+        scene.warnings
+    );
+}
+
+#[test]
 fn what_is_left_out_is_named_with_its_line() {
     let scene = mesh(format!("{SQUARE}bogus 1\ncstype bezier\nf 1 2\nf 1 2 3\nbogus 2\n").as_bytes());
     let shown: Vec<&str> = scene.warnings.iter().filter_map(|w| w.split("m.obj:").nth(1)).collect();

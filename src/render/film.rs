@@ -20,6 +20,9 @@ use super::tile::Tile;
 /// Red, green, blue, alpha and weight.
 const PARTS: usize = 5;
 
+/// Which of them is alpha.
+const ALPHA: usize = 3;
+
 /// What a tile has gathered in each half: sums over its pixels and a rim of one.
 #[derive(Clone, Debug, Default)]
 pub struct TileSums {
@@ -123,7 +126,11 @@ impl Film {
                 }
             }
         }
-        let mean = |sum: &[f64; PARTS], k: usize| if sum[4] > 0.0 { limited(sum[k] / sum[4]) } else { 0.0 };
+        let mean = |sum: &[f64; PARTS], k: usize| match if sum[4] > 0.0 { limited(sum[k] / sum[4]) } else { 0.0 } {
+            // A clear surface that amplifies makes a sample's share negative.
+            alpha if k == ALPHA => alpha.clamp(0.0, 1.0),
+            light => light,
+        };
         sums.iter().flat_map(|sum| (0..channels).map(move |k| mean(sum, k))).collect()
     }
 

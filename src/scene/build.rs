@@ -2,6 +2,7 @@
 
 use super::camera::{Camera, CameraFlaw};
 use super::error::{Place, SceneError, SceneProblem};
+use super::extent;
 use super::flakes::Flakes;
 use super::geometry::{Geometry, Shape};
 use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
@@ -84,10 +85,13 @@ impl<'c> Builder<'c> {
     }
 
     /// The finished scene; `root` is the place to blame for what is missing.
-    pub fn finish(self, root: Place) -> Result<Scene, SceneError> {
+    pub fn finish(mut self, root: Place) -> Result<Scene, SceneError> {
         if self.geometry.primitives.is_empty() && self.scene.background.is_none() {
             return Err(SceneError::at(root, SceneProblem::NothingToSee)
                 .with_help("add a <Sphere>, <Quad>, <Model> or <Background>"));
+        }
+        if let Some(oddity) = extent::oddity(&self.geometry) {
+            self.scene.warnings.push(format!("{root}: warning: {oddity}"));
         }
         Ok(Scene { geometry: Arc::new(self.geometry), ..self.scene })
     }
@@ -118,7 +122,7 @@ impl<'c> Builder<'c> {
     }
 
     fn camera(&mut self, e: &Element) -> Result<(), SceneError> {
-        e.check_attributes(&["eye", "dir", "look_at", "up", "fov"])?;
+        e.check_attributes(&["eye", "dir", "look_at", "up", "fov", "res"])?;
         let base = Camera::default();
         let eye = e.vector("eye")?.unwrap_or(base.eye);
         let look_at = e.vector("look_at")?;
@@ -138,6 +142,7 @@ impl<'c> Builder<'c> {
             return Err(error.with_help(flaw.help()));
         }
         self.scene.camera = camera;
+        self.scene.options.resolution = resolution(e)?.or(self.scene.options.resolution);
         Ok(())
     }
 
@@ -289,6 +294,7 @@ impl<'c> Builder<'c> {
             search,
         };
         let group = self.compiler.compile(&spec).map_err(|error| error.or_at(&spec.layers[0].place))?;
+        self.scene.warnings.extend(self.compiler.take_warnings());
         self.add_material(name, spec, group);
         Ok(())
     }
@@ -320,6 +326,17 @@ impl<'c> Builder<'c> {
             place: spec.place,
         };
         self.scene.materials.push(material);
+    }
+}
+
+/// The width and height that a camera states.
+fn resolution(e: &Element) -> Result<Option<[u32; 2]>, SceneError> {
+    let what = "width and height in pixels, such as `640 480`,";
+    let Some(numbers) = e.numbers("res", what)? else { return Ok(None) };
+    let whole = |x: &f32| *x >= 1.0 && *x <= 65536.0 && x.fract() == 0.0;
+    match numbers[..] {
+        [width, height] if numbers.iter().all(whole) => Ok(Some([width as u32, height as u32])),
+        _ => Err(e.bad_value("res", what)),
     }
 }
 

@@ -7,6 +7,7 @@ mod build;
 mod camera;
 mod compiler;
 mod error;
+mod extent;
 mod flakes;
 mod geometry;
 mod group;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// The lines of a text, each with its number from 1. A line that ends in `\` goes on in the next one.
+/// The lines of a text, each with its number from 1. A line that ends in `\` and has no comment goes on in the next one.
 ///
 /// Line ends are those of Unix, of Windows and of the old Macintosh; a byte order mark is no part of the first line.
 pub struct Lines<'t> {
@@ -58,7 +58,7 @@ impl<'t> Iterator for Lines<'t> {
         let number = self.number;
         let trimmed = line.trim_ascii();
         match trimmed.last() {
-            Some(b'\\') if trimmed[0] != b'#' => Some((number, Cow::Owned(self.go_on(trimmed)))),
+            Some(b'\\') if !trimmed.contains(&b'#') => Some((number, Cow::Owned(self.go_on(trimmed)))),
             _ => Some((number, Cow::Borrowed(trimmed))),
         }
     }

@@ -34,7 +34,7 @@ pub struct Part {
     pub faces: Range<usize>,
 }
 
-/// What an OBJ file says. Every index that a corner has is in range.
+/// What an OBJ file says. Every index that a corner has is in range, unless there are no texture coordinates or normals at all.
 #[derive(Clone, Debug, Default)]
 pub struct ObjMesh {
     /// The positions, all finite.

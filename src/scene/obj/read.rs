@@ -233,6 +233,12 @@ impl Reader {
         for attribute in [Attribute::Position, Attribute::Uv, Attribute::Normal] {
             let count = self.mesh.count(attribute);
             if let Some((index, line)) = self.ahead[attribute as usize].filter(|(index, _)| *index > count as i64) {
+                if count == 0 && attribute != Attribute::Position {
+                    // Files of subdivision surfaces do this.
+                    let statement = attribute.statement();
+                    self.mesh.notes.add(line, || format!("faces name `{statement}`, of which there are none"));
+                    continue;
+                }
                 return Err(ObjFlaw::Line { line, flaw: LineFlaw::OutOfRange { attribute, index, count } });
             }
         }
