@@ -10,7 +10,7 @@ use velour::render::accel::{Accel, Method, NOTHING, Ray};
 use velour::render::{Image, Settings, Silent, random, render};
 use velour::scene::{Scene, ShaderFiles, Shape};
 
-const SCENES: [(&str, u32); 4] = [("figure1", 64), ("lamps", 16), ("layers", 16), ("million", 16)];
+const SCENES: [(&str, u32); 4] = [("spheres", 64), ("lamps", 16), ("layers", 16), ("million", 16)];
 const TURNS: usize = 3;
 const RAYS: u32 = 1 << 16;
 

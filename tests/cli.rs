@@ -104,10 +104,6 @@ fn mistakes_of_a_scene_have_one_message_each() {
             group("shader missing l1;"),
             "scene.xml:2:21: error: shader `missing` is not found\n  help: no `missing.osl` in .; add folders with --path\n",
         ),
-        (
-            group("float Cx 1; shader matte l1;"),
-            "scene.xml:2:20: error: shader `matte` has no parameter `Cx`\n  help: ",
-        ),
         (group("string Cs x; shader matte l1;"), "scene.xml:2:21: error: parameter `Cs` is a color, not a string\n"),
         (
             group("shader cloth a; shader matte b; connect a.base b.C;"),
@@ -463,4 +459,48 @@ fn shaders_of_the_binary_come_after_those_of_the_scene_and_the_path() {
     assert_eq!(render(&["--path", "more"]), 0.5);
     place.file("sky.osl", "surface sky() { Ci = 0.75 * background(); }");
     assert_eq!(render(&["--path", "more"]), 0.75);
+}
+
+#[test]
+fn a_parameter_that_is_not_there_is_a_warning_and_an_error_with_strict() {
+    let place = Place::new();
+    place.file("scene.xml", scene("radiance 1 1 1", "float Cx 1; shader matte l1;"));
+    let render = |more: &[&str]| {
+        place.say(&[&["render", "scene.xml", "-o", "out.png", "--spp", "1"], &SMALL[..], more].concat())
+    };
+    let (code, _, error) = render(&[]);
+    assert_eq!(code, 0, "{error}");
+    assert!(error.starts_with("scene.xml:2:20: warning: shader `matte` has no parameter `Cx`"), "{error}");
+    let (code, _, error) = render(&["--strict"]);
+    assert_eq!(code, 1, "{error}");
+    assert!(error.starts_with("scene.xml:2:20: error: shader `matte` has no parameter `Cx`\n  help: "), "{error}");
+}
+
+#[test]
+fn flags_of_testrender_are_taken_with_a_note() {
+    let place = Place::new();
+    place.file("scene.xml", scene("radiance 1 1 1", "shader matte l1;"));
+    let flags = ["-v", "--runstats", "--llvm_opt", "2", "--options", "a=1"];
+    let base = [&["render", "scene.xml", "-o", "out.png", "--spp", "1"], &SMALL[..3], &["-t", "100000"]].concat();
+    let (code, _, error) = place.say(&[&base[..], &flags].concat());
+    assert_eq!(code, 0, "{error}");
+    for flag in ["-v", "--runstats", "--llvm_opt", "--options"] {
+        let note = format!("note: {flag} is of testrender and changes nothing here\n");
+        assert_eq!(error.matches(&note).count(), 1, "{error}");
+    }
+    assert!(error.contains("warning: 100000 threads are too many for this machine; "), "{error}");
+}
+
+#[test]
+fn a_scene_states_its_size_and_the_command_line_wins() {
+    let place = Place::new();
+    let text = scene("radiance 1 1 1", "shader matte l1;").replace("<World>", "<World><Camera res=\"20 10\"/>");
+    place.file("scene.xml", text);
+    let render = |more: &[&str]| {
+        let (code, _, error) = place.say(&[&["render", "scene.xml", "-o", "out.png", "--spp", "1"], more].concat());
+        assert_eq!(code, 0, "{error}");
+        error
+    };
+    assert!(render(&[]).contains("out.png: 20 x 10, "));
+    assert!(render(&["--res", "8", "6"]).contains("out.png: 8 x 6, "));
 }

@@ -403,3 +403,80 @@ fn every_problem_has_a_code_of_its_own() {
     assert_eq!(inner(&group("string Cs x; shader matte l1;")), "G0301");
     assert!(inner(&group("shader wrong l1;")).starts_with("E0"), "the messages of the shader are there");
 }
+
+#[test]
+fn a_parameter_that_is_not_there_is_a_warning_where_that_is_asked_for() {
+    let text = "<World><ShaderGroup>float Cx 1; color Cs 1 0 0; shader matte l1;</ShaderGroup>\n<Background/></World>";
+    let lenient = ShaderFiles::default().lenient(true);
+    let scene = Scene::load(text, &[] as &[PathBuf], &lenient).unwrap_or_else(|error| panic!("{error}"));
+    let expected =
+        "<scene text>:1:27: warning: shader `matte` has no parameter `Cx`; its value is left out; did you mean `Cs`?";
+    assert_eq!(scene.warnings, [expected]);
+    let error = Scene::load(text, &[] as &[PathBuf], &ShaderFiles::default()).map(|_| ()).unwrap_err();
+    assert_eq!(error.problem.code(), "S0607");
+    // A value of the wrong kind is a mistake either way.
+    let text = "<World><ShaderGroup>string Cs x; shader matte l1;</ShaderGroup><Background/></World>";
+    assert!(Scene::load(text, &[] as &[PathBuf], &lenient).is_err());
+}
+
+#[test]
+fn a_camera_may_state_the_size_of_its_picture() {
+    let size = |attributes: &str| {
+        let text = format!("<World><ShaderGroup>shader a l;</ShaderGroup><Background/><Camera {attributes}/></World>");
+        load(&text).map(|scene| scene.options.resolution)
+    };
+    assert_eq!(size("").unwrap(), None);
+    assert_eq!(size(r#"res="640 256""#).unwrap(), Some([640, 256]));
+    assert_eq!(size(r#"res="640,256""#).unwrap(), Some([640, 256]));
+    for wrong in ["640", "0 1", "1.5 2", "-1 1", "1 2 3", "a b", "70000 1", ""] {
+        let error = size(&format!("res=\"{wrong}\"")).unwrap_err().to_string();
+        assert!(error.contains("`res` of <Camera>") && error.contains("width and height in pixels"), "{error}");
+    }
+}
+
+/// Places are looked up for every element, so that a lookup must not count from the start of the text.
+#[test]
+fn many_elements_on_one_line_load_at_once() {
+    let mut text = String::from("<World><ShaderGroup>shader a l;</ShaderGroup>");
+    (0..60_000).for_each(|i| text += &format!(r#"<Sphere center="{i},0,0" radius=".5"/>"#));
+    let bad = text.clone() + r#"<Sphere center="0,0,0" radius="x"/></World>"#;
+    text += "</World>";
+    let start = std::time::Instant::now();
+    let scene = load(&text).unwrap();
+    assert_eq!(scene.geometry.primitives.len(), 60_000);
+    let last = &scene.geometry.objects[59_999].place;
+    let column = text.rfind("<Sphere").unwrap() as u32 + 1;
+    assert_eq!((last.line, last.column), (1, column));
+    let error = load(&bad).map(|_| ()).unwrap_err();
+    assert!(error.to_string().contains(&format!(":1:{}: error: `radius`", bad.rfind('x').unwrap() + 1)), "{error}");
+    // A quarter of a second; counting anew for each took a minute.
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
+
+#[test]
+fn an_element_of_too_many_attributes_is_refused_at_once() {
+    let many: String = (0..40_000).map(|i| format!(" a{i}=\"1\"")).collect();
+    let error = load(&format!("<World>\n<Camera{many}/></World>")).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains(":2:1: error: the scene is not well-formed XML: an element has more than 1024"), "{error}");
+}
+
+#[test]
+fn a_scene_too_far_or_too_large_for_singles_is_warned_of_with_its_limit() {
+    let warnings = |center: &str, radius: &str| {
+        let sphere = format!(r#"<Sphere center="{center}" radius="{radius}"/>"#);
+        load(&format!("<World><ShaderGroup>shader a l;</ShaderGroup>{sphere}</World>")).unwrap().warnings
+    };
+    for (center, radius) in [("0,0,0", "1"), ("1000,0,0", "1"), ("0,0,0", "9e7"), ("0,0,0", "1e-8"), ("1e6,0,0", "1e4")]
+    {
+        assert_eq!(warnings(center, radius), [] as [String; 0], "{center} {radius}");
+    }
+    for (center, radius, expected) in [
+        ("1e4,0,0", "1", " of its own sizes from the origin; beyond 512 "),
+        ("0,0,0", "1e9", "reaches to 1e9 units; above 1e8 areas overflow"),
+        ("0,0,0", "1e-12", "is 2e-12 units large; below 1e-9 areas vanish"),
+    ] {
+        let found = warnings(center, radius);
+        assert!(found.len() == 1 && found[0].contains(expected), "{center} {radius}: {found:?}");
+        assert!(found[0].starts_with("<scene text>:1:1: warning: "), "{found:?}");
+    }
+}

@@ -1,6 +1,8 @@
-//! Ashikhmin's velvet: an inverted Gaussian of micronormals, the model that sheen is compared with.
+//! Ashikhmin's velvet: an inverted Gaussian of micronormals, the model that sheen is compared with, in two published forms.
 
-use super::sheen::albedo::{AlbedoCurve, MIN_FITTED_ROUGHNESS};
+pub mod form_2000;
+
+use super::sheen::albedo::{AlbedoCurve, MIN_VELVET_WIDTH};
 use super::sheen::charlie::sin2_half;
 use super::{Eval, Params, Scatter, View, select};
 use crate::math::elementary::exp;
@@ -8,7 +10,23 @@ use crate::math::warp::{cosine_hemisphere, cosine_hemisphere_pdf, uniform_hemisp
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, TAU};
 
-/// `ashikhmin_velvet(N, sigma)`.
+/// The two forms of the velvet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Form {
+    /// Ashikhmin, Premoze and Shirley 2000: [`form_2000::Velvet2000`]. No light along the normal, grooves that hide each other. What the
+    /// paper of the sheen compares with, and what renderers know under this name; hence the default.
+    #[default]
+    Of2000,
+    /// Ashikhmin and Premoze 2007: [`Velvet`]. A constant part fills the dark spot, and nothing hides anything.
+    Of2007,
+}
+
+impl Form {
+    /// Both with the word that selects them.
+    pub const ALL: &[(&str, Form)] = &[("2000", Form::Of2000), ("2007", Form::Of2007)];
+}
+
+/// `ashikhmin_velvet(N, sigma, "form", "2007")`.
 ///
 /// Source: Ashikhmin and Premoze 2007, normalised inverted Gaussian
 /// D = (1 + 4 exp(-cot²/m²) / sin⁴) / (pi (1 + 4 m²)), visibility 1 / (4 (ci + co - ci co)).
@@ -40,7 +58,7 @@ impl Scatter for Velvet {
 
     #[inline(always)]
     fn prepare([m, ..]: Params) -> Self {
-        let m = m.clamp(MIN_FITTED_ROUGHNESS, 1.0);
+        let m = m.clamp(MIN_VELVET_WIDTH, 1.0);
         let norm = FRAC_1_PI / (1.0 + 4.0 * m * m);
         Velvet { slope: -1.0 / (m * m), norm, albedo: AlbedoCurve::velvet(m) }
     }

@@ -3,7 +3,7 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::speak::{say, tell};
-use crate::measure::chart::{Budget, Effort, draw, figure::Figure, figures, scene_figure, table};
+use crate::measure::chart::{Budget, Effort, density, draw, figure::Figure, figures, scene_figure, table};
 use crate::scene::{Scene, ShaderFiles};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -54,7 +54,7 @@ pub fn run(args: &ChartArgs) -> Result<(), Failure> {
         figures.push(scene_figure(scene, &budget, &progress).map_err(Failure::Wrong)?);
     }
     bar.finish_and_clear();
-    for figure in &figures {
+    for figure in figures.iter().chain([&density()]) {
         write_figure(&args.output, figure)?;
     }
     let text = table::markdown(&figures, &table::machine());

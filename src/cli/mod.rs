@@ -10,6 +10,7 @@ mod info_file;
 mod new;
 mod render;
 mod speak;
+mod threads;
 mod tree;
 mod verify;
 

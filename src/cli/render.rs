@@ -3,6 +3,7 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::speak::{say, tell};
+use super::threads::capped;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
@@ -24,11 +25,11 @@ pub struct RenderArgs {
     /// The image, as testrender takes it
     #[arg(value_name = "IMAGE", conflicts_with = "output")]
     image: Option<PathBuf>,
-    /// Threads; 0 for one a core
+    /// Threads; 0 for one a core, and at most 64 or four for each
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
-    /// Width and height in pixels
-    #[arg(short, long, num_args = 2, value_names = ["W", "H"], default_values_t = [640, 480])]
+    /// Width and height in pixels [default: what the scene states, or 640 480]
+    #[arg(short, long, num_args = 2, value_names = ["W", "H"])]
     res: Vec<u32>,
     /// N x N samples a pixel
     #[arg(long, value_name = "N", conflicts_with = "spp")]
@@ -57,7 +58,7 @@ pub struct RenderArgs {
     /// Shadowing term of sheen: exact, published, ashikhmin or series [default: exact]
     #[arg(long)]
     shadowing: Option<Shadowing>,
-    /// How the albedo of sheen is found under an exact shadowing term: short, fit or long [default: fit]
+    /// How the albedo of sheen is found under an exact shadowing term: short, fit, long or table [default: fit]
     #[arg(long)]
     albedo: Option<SheenAlbedo>,
     /// Take the cheapest methods whose measured error is at most this; --shadowing and --albedo win over it
@@ -69,7 +70,7 @@ pub struct RenderArgs {
     /// Send every sample through its pixel's centre
     #[arg(long)]
     no_jitter: bool,
-    /// Keep an alpha channel
+    /// Keep an alpha channel: colors are premultiplied, and the background is left out of them
     #[arg(long)]
     alpha: bool,
     /// How directions of sheen are drawn: ltc, uniform, cosine or normals
@@ -84,8 +85,45 @@ pub struct RenderArgs {
     /// Say what the scene needs, and what it does not, before rendering
     #[arg(long)]
     explain: bool,
+    /// Refuse a scene that gives a shader a parameter it does not have; without, that is a warning
+    #[arg(long)]
+    strict: bool,
     #[command(flatten)]
     compile: CompileArgs,
+    #[command(flatten)]
+    testrender: TestrenderArgs,
+}
+
+/// What testrender's command line may say and this renderer has no use for.
+#[derive(clap::Args)]
+struct TestrenderArgs {
+    /// Taken as testrender takes it; changes nothing
+    #[arg(short = 'v', hide = true)]
+    verbose: bool,
+    /// Taken as testrender takes it; changes nothing
+    #[arg(long, hide = true)]
+    runstats: bool,
+    /// Taken as testrender takes it; changes nothing
+    #[arg(long = "llvm_opt", hide = true, value_name = "LEVEL")]
+    llvm_opt: Option<String>,
+    /// Taken as testrender takes it; changes nothing
+    #[arg(long, hide = true, value_name = "TEXT")]
+    options: Option<String>,
+}
+
+impl TestrenderArgs {
+    /// Says which of them are there.
+    fn note(&self) {
+        let given = [
+            (self.verbose, "-v"),
+            (self.runstats, "--runstats"),
+            (self.llvm_opt.is_some(), "--llvm_opt"),
+            (self.options.is_some(), "--options"),
+        ];
+        for (_, flag) in given.iter().filter(|(given, _)| *given) {
+            tell(&format!("note: {flag} is of testrender and changes nothing here\n"));
+        }
+    }
 }
 
 /// A bar on a terminal, nothing elsewhere.
@@ -120,12 +158,17 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         path.ok_or_else(|| Failure::Usage("error: no image is named\n  help: add `-o picture.png`".to_owned()))?;
     output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
-    let compiler = ShaderFiles::new(args.compile.compiler()?);
+    args.testrender.note();
+    let compiler = ShaderFiles::new(args.compile.compiler()?).lenient(!args.strict);
     let scene = Scene::load(&args.scene, &args.path, &compiler).map_err(Failure::of_scene)?;
     for warning in &scene.warnings {
         tell(&format!("{warning}\n"));
     }
     let mut settings = settings(args).with_options(&scene.options);
+    if let ([], Some(stated)) = (&args.res[..], scene.options.resolution) {
+        [settings.width, settings.height] = stated;
+    }
+    settings.threads = capped(args.threads);
     if let Some(tolerance) = args.tolerance {
         settings.closure = chosen(args, tolerance, settings.closure);
     }
@@ -146,9 +189,10 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
 fn settings(args: &RenderArgs) -> Settings {
     let defaults = Settings::default();
     let adapts = args.noise.is_some() || args.time.is_some();
+    let [width, height] = <[u32; 2]>::try_from(&args.res[..]).unwrap_or([defaults.width, defaults.height]);
     Settings {
-        width: args.res[0],
-        height: args.res[1],
+        width,
+        height,
         samples: args.spp.or(args.aa.map(|aa| aa.saturating_mul(aa))).unwrap_or(if adapts { 1 << 16 } else { 64 }),
         noise: args.noise,
         seconds: args.time,

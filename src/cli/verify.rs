@@ -3,6 +3,7 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::speak::{colored, say, tell};
+use super::threads::capped;
 use crate::closure::settings::Shadowing;
 use crate::closure::{Layering, Settings};
 use crate::compile::{Compiler, Shader};
@@ -51,7 +52,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let subjects = subjects(args)?;
     let subjects: Vec<&dyn Subject> = subjects.iter().map(AsRef::as_ref).collect();
     let effort = args.effort();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads).build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(capped(args.threads)).build();
     let pool = pool.map_err(|error| Failure::Usage(format!("error: no threads: {error}")))?;
     // indicatif draws nothing when standard error is no terminal.
     let bar = ProgressBar::new(0);

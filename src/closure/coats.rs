@@ -9,10 +9,11 @@
 //! Departs from source: T is 1 less the albedo of the boundary's lobe, on both sides, which stands for their factor for
 //! light that facets shadow (G): what a rough boundary does not reflect passes.
 //!
-//! Decision (2026-11-22): the paper's formula takes f of the base as it stands, which is right for a diffuse base, where the
-//! light that the boundary throws back is scattered again and finds its way out, and sends out eta² times too much from a
-//! glossy base, whose lobe the boundary widens. So diffuse lobes follow the paper, and all others keep the energy of
-//! their lobe (f / eta²), instead of one rule for both.
+//! Decision (2026-11-29): all lobes keep the energy of their lobe on the way out (f / eta²), and diffuse ones are brightened by what the
+//! boundary throws back at them (`darkening`), because then a white base under a coat sends out all light and a grey one of 0.5 the
+//! 0.32 that measured and simulated coats have, instead of the paper's f as it stands, which gives 0.48. A shader has the paper's
+//! formula with `"darkening", 0`: diffuse lobes without either factor, all others with f / eta², since a glossy lobe taken as it
+//! stands would send out eta² times too much.
 
 use super::batch::LobeColumns;
 use super::frames::FrameColumns;
@@ -42,6 +43,10 @@ pub struct Coat {
     alpha: Option<Vec<f32>>,
     /// Optical depth of a perpendicular crossing, when it absorbs.
     depth: Option<Column3>,
+    /// Where diffuse lobes are brightened by what the boundary throws back.
+    darkens: Vec<bool>,
+    /// The part of diffuse light inside that leaves, where that is so.
+    escape: Vec<f32>,
     /// The viewer inside, world.
     pub wo: Column3,
     /// The light of the last evaluation inside, world.
@@ -56,7 +61,8 @@ pub struct Coat {
     pub tint_i: Column3,
     /// Solid angle inside over outside of the light's direction, all coats around included.
     pub density: Vec<f32>,
-    /// Cosine outside over inside of the light's direction, all coats around included.
+    /// What f cos of diffuse lobes is multiplied with: `density` over what escapes, whose part is in their weight, or where the
+    /// coat does not darken the cosine outside over inside of the light's direction; all coats around included.
     pub spread: Vec<f32>,
     /// True when it, or a coat around it, absorbs.
     pub colored: bool,
@@ -73,6 +79,17 @@ pub struct Coating {
     pub alpha: Option<Vec<f32>>,
     /// Optical depth of a perpendicular crossing, when it absorbs.
     pub depth: Option<Column3>,
+    /// Where diffuse lobes are brightened by what the boundary throws back.
+    pub darkens: Vec<bool>,
+}
+
+/// What a coat's boundary is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boundary {
+    /// Index of refraction inside over outside.
+    pub eta: f32,
+    /// GGX width, where it is rough.
+    pub alpha: Option<f32>,
 }
 
 /// All coats of a batch.
@@ -100,17 +117,17 @@ impl Coats {
     /// Adds the coat under a coat, with what the viewer decides, and gives its index.
     pub fn push(&mut self, parent: u32, coating: Coating, frames: &[FrameColumns], wo: &Column3) -> u32 {
         let n = wo.len();
-        let Coating { frame, mut eta, alpha, depth } = coating;
+        let Coating { frame, mut eta, alpha, depth, darkens } = coating;
         for value in &mut eta {
             *value = if value.is_finite() { value.min(1e3) } else { 1.0 };
         }
         let outer = self.get(parent);
         let colored = depth.is_some() || outer.is_some_and(|m| m.colored);
-        let mut coat = Coat { parent, frame, eta, alpha, depth, colored, ..Coat::default() };
+        let mut coat = Coat { parent, frame, eta, alpha, depth, darkens, colored, ..Coat::default() };
         for column in [&mut coat.wo, &mut coat.wi, &mut coat.tint_o, &mut coat.tint_i] {
             column.resize(n);
         }
-        for column in [&mut coat.pass_o, &mut coat.pass_i, &mut coat.density, &mut coat.spread] {
+        for column in [&mut coat.escape, &mut coat.pass_o, &mut coat.pass_i, &mut coat.density, &mut coat.spread] {
             column.resize(n, 1.0);
         }
         let from = Crossing { normal: Triples::of(&frames[frame as usize].normal), eta: &coat.eta };
@@ -129,17 +146,42 @@ impl Coats {
         self.list.len() as u32 - 1
     }
 
+    /// Says what part of diffuse light leaves a coat from inside, above 0.
+    pub fn set_escape(&mut self, coat: u32, parts: &[f32]) {
+        if let Some(coat) = self.list.get_mut(coat as usize) {
+            coat.escape.copy_from_slice(parts);
+        }
+    }
+
     /// Brings the light's directions into every coat.
     pub fn light(&mut self, frames: &[FrameColumns], wi: &Column3) {
         for index in 0..self.list.len() {
             let (before, rest) = self.list.split_at_mut(index);
-            let Coat { parent, frame, eta, alpha, depth, wi: inside, tint_i, pass_i, density, spread, colored, .. } =
-                &mut rest[0];
+            let coat = &mut rest[0];
+            let Coat {
+                parent,
+                frame,
+                eta,
+                alpha,
+                depth,
+                darkens,
+                escape,
+                wi: inside,
+                tint_i,
+                pass_i,
+                density,
+                spread,
+                colored,
+                ..
+            } = coat;
             let outer = before.get(*parent as usize);
             let from = Crossing { normal: Triples::of(&frames[*frame as usize].normal), eta };
             let above = Triples::of(outer.map_or(wi, |m| &m.wi));
             enter_lanes(from, above, &mut inside.x, &mut inside.y, &mut inside.z, pass_i, density, spread);
             pass_facets(from, above, alpha.as_deref(), pass_i);
+            for lane in (0..wi.len()).filter(|&lane| darkens[lane]) {
+                spread[lane] = density[lane] / escape[lane];
+            }
             if let Some(outer) = outer {
                 for lane in 0..wi.len() {
                     density[lane] = (density[lane] * outer.density[lane]).min(MOST_RATIO);
@@ -175,6 +217,27 @@ impl Coats {
 }
 
 impl Coat {
+    /// Its boundary in a lane.
+    pub fn boundary(&self, lane: usize) -> Boundary {
+        let alpha = self.alpha.as_ref().map(|alpha| alpha[lane]).filter(|&alpha| alpha >= MIN_ALPHA);
+        Boundary { eta: self.eta[lane], alpha }
+    }
+
+    /// The optical depth of a perpendicular crossing, when it absorbs.
+    pub fn depth(&self, lane: usize) -> Option<Vec3> {
+        self.depth.as_ref().map(|depth| depth.get(lane))
+    }
+
+    /// True where diffuse lobes are brightened by what the boundary throws back.
+    pub fn darkens(&self, lane: usize) -> bool {
+        self.darkens[lane]
+    }
+
+    /// True when that is so in any lane.
+    pub fn darkens_any(&self) -> bool {
+        self.darkens.contains(&true)
+    }
+
     /// What absorption leaves on the viewer's side, all coats around included.
     pub fn viewer_tint(&self, lane: usize) -> Vec3 {
         if self.colored { self.tint_o.get(lane) } else { Vec3::ONE }

@@ -4,6 +4,7 @@
 //! recursion, no stack, and a node that several parents share is visited once. What reaches a node under the same layer
 //! is summed there, so `Ci = Ci + Ci` fifty times is one lobe and not 2^50.
 
+use super::darkening::{Coated, darken};
 use super::flat::{Flat, Lobe};
 use super::frames::Seen;
 use super::layering::{Layer, Top};
@@ -45,6 +46,7 @@ pub struct Sweep {
     weights: Weights,
     tops: Tops,
     emitters: Vec<Emitter>,
+    coated: Vec<Coated>,
     ready: Vec<(u32, Leaf)>,
 }
 
@@ -56,6 +58,7 @@ impl Sweep {
         self.entries.clear();
         self.weights.clear();
         self.emitters.clear();
+        self.coated.clear();
     }
 
     /// Sends a weight to a node; false when there are too many.
@@ -97,6 +100,7 @@ pub fn flatten(flat: &mut Flat, sweep: &mut Sweep, library: &Library, tree: &Tre
     flat.layers.prepare(&flat.models, &flat.coats, &flat.ones);
     flat.layers.prepare_lossless(&flat.models);
     emit(flat, sweep);
+    darken(flat, &sweep.weights, &sweep.coated);
     pick(flat);
 }
 
@@ -212,6 +216,9 @@ impl Pass<'_> {
             let (rule, coverage, tints) = (cover.rule, cover.coverage, cover.tints);
             layers.list.push(Layer { parent: layer, depth, rule, top, coat, coverage, tints });
             let inner = layers.list.len() as u32 - 1;
+            if matches!(top, Top::Boundary) {
+                self.sweep.coated.push(Coated { layer: inner, weight });
+            }
             let weight = if cover.gate == Column::ONES {
                 weight
             } else {

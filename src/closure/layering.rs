@@ -15,7 +15,7 @@ use super::source::Triples;
 use super::store::{NONE, Store};
 use super::weights::{MOST_WEIGHT, Operand, multiply, usable};
 use crate::bsdf::between;
-use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD};
+use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD, TABLE_METHOD};
 use crate::lanes;
 use crate::math::columns::Column3;
 use crate::math::quadrature::GAUSS_8;
@@ -452,6 +452,7 @@ fn sheen_albedo(models: &LobeModels, model: &LobeModel, soft: bool, cos: &[f32],
             SheenAlbedo::Short => sheen_albedo_lanes::<SHORT_METHOD>(curve(0), cos, out),
             SheenAlbedo::Fit => sheen_albedo_lanes::<FIT_METHOD>(curve(0), cos, out),
             SheenAlbedo::Long => sheen_albedo_lanes::<LONG_METHOD>(curve(0), cos, out),
+            SheenAlbedo::Table => sheen_albedo_lanes::<TABLE_METHOD>(curve(0), cos, out),
         };
     }
     for lane in 0..out.len() {

@@ -59,6 +59,8 @@ pub(super) struct Loops {
     pub top: bool,
     /// Whether light comes through the surface.
     pub crosses: bool,
+    /// True when some of its light leaves on the viewer's side.
+    pub reflects: bool,
     /// What the viewer decides.
     pub view: fn(Numbers, Choice, Triples, &mut [f32]),
     /// f cos and density, added to three columns and one.
@@ -168,6 +170,7 @@ impl<M: Scatter> OfModel<M> {
             sheen: M::SHEEN,
             top: M::TOP,
             crosses: !matches!(M::SIDE, Side::Same),
+            reflects: !matches!(M::SIDE, Side::Other),
             view: view::<M>,
             evaluate: evaluate::<M>,
             sample: sample::<M>,

@@ -14,6 +14,7 @@ pub mod arguments;
 mod batch;
 mod coats;
 mod curves;
+mod darkening;
 mod definition;
 mod evaluate;
 pub mod event;

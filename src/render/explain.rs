@@ -115,9 +115,10 @@ fn albedos(group: &Group, method: SheenAlbedo) -> Vec<&'static str> {
         let words = match by {
             TopAlbedo::Formula => continue,
             TopAlbedo::Sheen => match method {
-                SheenAlbedo::Short => "short polynomial of the sheen's albedo",
-                SheenAlbedo::Fit => "polynomial of the sheen's albedo",
-                SheenAlbedo::Long => "long polynomial of the sheen's albedo",
+                SheenAlbedo::Short => "short polynomial of the sheen's albedo (a roughness below 0.01 counts as 0.01)",
+                SheenAlbedo::Fit => "polynomial of the sheen's albedo (a roughness below 0.01 counts as 0.01)",
+                SheenAlbedo::Long => "long polynomial of the sheen's albedo (a roughness below 0.01 counts as 0.01)",
+                SheenAlbedo::Table => "table of the sheen's albedo (a roughness below 0.01 counts as 0.01)",
             },
             TopAlbedo::Facets => FACET_TABLE,
             TopAlbedo::Boundary => "Fresnel's term of the coat",

@@ -9,7 +9,7 @@ pub struct Image {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Three channels, or four with alpha.
+    /// Three channels, or four with alpha, by which the colors are then multiplied.
     pub channels: usize,
     /// `width * height * channels` numbers, all finite.
     pub pixels: Vec<f32>,

@@ -17,7 +17,7 @@
 //! of lights, their weights) is done for a block of sixteen lanes by loops that become SIMD, instead of path by path,
 //! because path by path it was two thirds of the time: with the early way out for spheres that a whole block misses,
 //! figure 1 went from 2.8 to 4.4 million camera samples a second on one thread of a 2-core AMD EPYC with AVX2
-//! (`velour render shaders/scenes/figure1.xml -o x.exr --res 640 256 --spp 64 -t 1`).
+//! (`velour render shaders/scenes/spheres.xml -o x.exr --res 640 256 --spp 64 -t 1`).
 //!
 //! Decision (2026-11-22): a wave has 8192 paths, because the batches of late bounces are fuller then: user seconds for 5.2
 //! million samples of figure 1, best of three, 2.02, 1.75, 1.63, 1.57 with 1024, 2048, 4096, 8192.

@@ -96,7 +96,8 @@ pub struct Settings {
     pub rr_depth: u32,
     /// False sends every sample through its pixel's centre.
     pub jitter: bool,
-    /// True keeps a fourth channel: the part of the pixel that is not background.
+    /// True keeps a fourth channel, alpha: the part of the pixel that is not background, in [0, 1]. Colors are then
+    /// premultiplied: the background that is seen directly or through clear surfaces is left out of them.
     pub alpha: bool,
     /// How light is sampled.
     pub lights: LightStrategy,

@@ -14,6 +14,9 @@ fn trace(world: &World, wave: &mut Wave) {
     let mut bounce = 0;
     while !wave.active.is_empty() {
         intersect(world, wave);
+        if world.settings.alpha {
+            leave_background_out(wave);
+        }
         background(world, wave);
         sort(world, wave, bounce);
         for batch in 0..wave.sorted.batches.len() {
@@ -36,6 +39,12 @@ fn trace(world: &World, wave: &mut Wave) {
         wave.advance();
         bounce += 1;
     }
+}
+
+/// With an alpha channel, the background behind nothing but clear surfaces is left to whatever the picture is laid over.
+fn leave_background_out(wave: &mut Wave) {
+    let Wave { paths, missed, .. } = wave;
+    missed.retain(|&i| !paths[i as usize].clear);
 }
 
 /// Adds `samples` of each of the tile's pixels to `sums`.

@@ -2,11 +2,13 @@
 
 use super::camera::{Camera, CameraFlaw};
 use super::error::{Place, SceneError, SceneProblem};
+use super::extent;
 use super::flakes::Flakes;
 use super::geometry::{Geometry, Shape};
 use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
-use super::mesh::{MaterialNames, add_mesh};
+use super::mesh::{Added, MaterialNames, MeshFile, add_mesh};
 use super::nearest::nearest;
+use super::placement::Placement;
 use super::scene::{Background, Material, Options, Scene};
 use super::source::within;
 use super::spec::{Statements, parse_group};
@@ -30,6 +32,10 @@ pub struct Builder<'c> {
     folders: Vec<PathBuf>,
     compiler: &'c dyn GroupCompiler,
     by_name: HashMap<String, u32>,
+    /// How many elements that are still to come name a file.
+    later_models: HashMap<String, usize>,
+    /// Meshes that another element will need.
+    meshes: HashMap<PathBuf, MeshFile>,
 }
 
 impl<'c> Builder<'c> {
@@ -44,7 +50,22 @@ impl<'c> Builder<'c> {
             background: None,
             warnings: Vec::new(),
         };
-        Builder { scene, geometry: Geometry::default(), folders, compiler, by_name: HashMap::new() }
+        Builder {
+            scene,
+            geometry: Geometry::default(),
+            folders,
+            compiler,
+            by_name: HashMap::new(),
+            later_models: HashMap::new(),
+            meshes: HashMap::new(),
+        }
+    }
+
+    /// Tells of an element that will be taken later: what it shares with others is then kept for it.
+    pub fn announce(&mut self, e: &Element) {
+        if let ("Model", Some(filename)) = (e.tag(), e.node.attribute("filename")) {
+            *self.later_models.entry(filename.to_owned()).or_default() += 1;
+        }
     }
 
     /// Takes one child of `<World>`.
@@ -64,10 +85,13 @@ impl<'c> Builder<'c> {
     }
 
     /// The finished scene; `root` is the place to blame for what is missing.
-    pub fn finish(self, root: Place) -> Result<Scene, SceneError> {
+    pub fn finish(mut self, root: Place) -> Result<Scene, SceneError> {
         if self.geometry.primitives.is_empty() && self.scene.background.is_none() {
             return Err(SceneError::at(root, SceneProblem::NothingToSee)
                 .with_help("add a <Sphere>, <Quad>, <Model> or <Background>"));
+        }
+        if let Some(oddity) = extent::oddity(&self.geometry) {
+            self.scene.warnings.push(format!("{root}: warning: {oddity}"));
         }
         Ok(Scene { geometry: Arc::new(self.geometry), ..self.scene })
     }
@@ -98,7 +122,7 @@ impl<'c> Builder<'c> {
     }
 
     fn camera(&mut self, e: &Element) -> Result<(), SceneError> {
-        e.check_attributes(&["eye", "dir", "look_at", "up", "fov"])?;
+        e.check_attributes(&["eye", "dir", "look_at", "up", "fov", "res"])?;
         let base = Camera::default();
         let eye = e.vector("eye")?.unwrap_or(base.eye);
         let look_at = e.vector("look_at")?;
@@ -118,6 +142,7 @@ impl<'c> Builder<'c> {
             return Err(error.with_help(flaw.help()));
         }
         self.scene.camera = camera;
+        self.scene.options.resolution = resolution(e)?.or(self.scene.options.resolution);
         Ok(())
     }
 
@@ -162,23 +187,48 @@ impl<'c> Builder<'c> {
     }
 
     fn model(&mut self, e: &Element) -> Result<(), SceneError> {
-        e.check_attributes(&["filename"])?;
+        e.check_attributes(&[&["filename"], &Placement::ATTRIBUTES[..]].concat())?;
         let last = self.last_material(e)?;
         let filename = e.required("filename")?;
+        let placement = Placement::read(e)?;
         let place = e.value_place("filename");
         let Some(path) = self.folders.iter().map(|f| within(f, filename)).find(|p| p.is_file()) else {
             let looked: Vec<String> = self.folders.iter().map(|f| f.display().to_string()).collect();
             return Err(SceneError::at(place, SceneProblem::MeshNotFound { file: filename.to_owned() })
                 .with_help(format!("looked in {}", looked.join(", "))));
         };
+        let wrong = |flaw| SceneError::at(place.clone(), SceneProblem::Mesh { file: path.display().to_string(), flaw });
+        let file = match self.meshes.remove(&path) {
+            Some(file) => file,
+            None => {
+                let file = MeshFile::read(&path).map_err(wrong)?;
+                self.scene.warnings.extend(file.warnings.iter().cloned());
+                file
+            }
+        };
         let names = MaterialNames { by_name: &self.by_name, last };
-        let degenerate = add_mesh(&mut self.geometry, &path, &names, &place)?;
-        if degenerate > 0 {
-            let warning =
-                format!("{place}: warning: {degenerate} triangles of `{filename}` have no area and are left out");
-            self.scene.warnings.push(warning);
+        let added = add_mesh(&mut self.geometry, &file, placement.as_ref(), &names, &place).map_err(wrong)?;
+        self.warn_of_mesh(filename, &place, &added);
+        // Kept for the next element of this file; none comes, and it goes with the last one that is told of.
+        if self.later_models.get_mut(filename).is_some_and(|left| std::mem::replace(left, left.saturating_sub(1)) > 1) {
+            self.meshes.insert(path, file);
         }
         Ok(())
+    }
+
+    fn warn_of_mesh(&mut self, filename: &str, place: &Place, added: &Added) {
+        let warnings = &mut self.scene.warnings;
+        if added.kept == 0 {
+            warnings.push(format!("{place}: warning: no triangle of `{filename}` has an area; it is left out"));
+        } else if added.degenerate > 0 {
+            let count = added.degenerate;
+            warnings.push(format!("{place}: warning: {count} triangles of `{filename}` have no area and are left out"));
+        }
+        if let [first, others @ ..] = &added.unmatched[..] {
+            let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+            let what = "has no <ShaderGroup> of its name and takes the last one";
+            warnings.push(format!("{place}: warning: material `{first}`{more} of `{filename}` {what}"));
+        }
     }
 
     fn weave(&mut self, e: &Element) -> Result<(), SceneError> {
@@ -244,6 +294,7 @@ impl<'c> Builder<'c> {
             search,
         };
         let group = self.compiler.compile(&spec).map_err(|error| error.or_at(&spec.layers[0].place))?;
+        self.scene.warnings.extend(self.compiler.take_warnings());
         self.add_material(name, spec, group);
         Ok(())
     }
@@ -275,6 +326,17 @@ impl<'c> Builder<'c> {
             place: spec.place,
         };
         self.scene.materials.push(material);
+    }
+}
+
+/// The width and height that a camera states.
+fn resolution(e: &Element) -> Result<Option<[u32; 2]>, SceneError> {
+    let what = "width and height in pixels, such as `640 480`,";
+    let Some(numbers) = e.numbers("res", what)? else { return Ok(None) };
+    let whole = |x: &f32| *x >= 1.0 && *x <= 65536.0 && x.fract() == 0.0;
+    match numbers[..] {
+        [width, height] if numbers.iter().all(whole) => Ok(Some([width as u32, height as u32])),
+        _ => Err(e.bad_value("res", what)),
     }
 }
 

@@ -3,21 +3,25 @@
 
 use super::error::{SceneError, SceneProblem};
 use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Values};
+use super::nearest::nearest;
 use super::shipped::shipped;
 use super::source::within;
 use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Shader};
 use crate::exec::Group;
 use crate::ir::lower::Binding;
+use crate::lang::path::root;
 use crate::lang::types::{Base, Length, Type};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Compiles groups from `.osl` files, from shaders in memory and from those in the binary.
 #[derive(Debug, Default)]
 pub struct ShaderFiles {
     /// Include folders, macros, header and closures for all shaders.
     pub compiler: Compiler,
+    lenient: bool,
+    warnings: Mutex<Vec<String>>,
     memory: HashMap<String, Shader>,
     files: Mutex<HashMap<PathBuf, Shader>>,
 }
@@ -28,6 +32,13 @@ impl ShaderFiles {
         ShaderFiles { compiler, ..Self::default() }
     }
 
+    /// True takes a value for a parameter that the shader does not have as a warning, as OSL does; false, the default, as
+    /// an error.
+    pub fn lenient(mut self, lenient: bool) -> Self {
+        self.lenient = lenient;
+        self
+    }
+
     /// Adds a shader that is not in a file; it is found before any file of its name.
     ///
     /// # Errors
@@ -36,6 +47,21 @@ impl ShaderFiles {
         let shader = self.compiler.compile("memory", text)?;
         self.memory.insert(shader.name().to_owned(), shader);
         Ok(self)
+    }
+
+    /// Warns of a value for a parameter that is not there.
+    fn warn(&self, shader: &Shader, param: &ParamValue) {
+        let variables = &shader.typed.variables;
+        let names = shader.typed.params.iter().map(|param| variables[param.var.0 as usize].name.as_str());
+        let names: Vec<&str> = names.collect();
+        let hint = match nearest(&param.name, &names) {
+            Some(near) => format!("; did you mean `{near}`?"),
+            None => String::new(),
+        };
+        let (place, shader, name) = (&param.place, shader.name(), &param.name);
+        let text =
+            format!("{place}: warning: shader `{shader}` has no parameter `{name}`; its value is left out{hint}");
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(text);
     }
 
     fn shader(&self, layer: &Layer, search: &[PathBuf]) -> Result<Shader, SceneError> {
@@ -82,13 +108,27 @@ fn find(name: &str, search: &[PathBuf]) -> Option<PathBuf> {
     candidates.chain([PathBuf::from(&with_extension)]).find(|path: &PathBuf| Path::is_file(path))
 }
 
+/// True when a shader has the parameter that a path leads into.
+fn has(shader: &Shader, path: &str) -> bool {
+    let variables = &shader.typed.variables;
+    shader.typed.params.iter().any(|param| variables[param.var.0 as usize].name == root(path))
+}
+
 impl GroupCompiler for ShaderFiles {
+    fn take_warnings(&self) -> Vec<String> {
+        std::mem::take(&mut self.warnings.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
     fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
         let mut builder = GroupBuilder::new(self.compiler.closures.clone());
         for layer in &spec.layers {
             let shader = self.shader(layer, &spec.search)?;
             builder = builder.layer(&layer.layer_name, &shader);
             for param in &layer.params {
+                if self.lenient && !has(&shader, &param.name) {
+                    self.warn(&shader, param);
+                    continue;
+                }
                 let binding = match &param.values {
                     Values::Floats(values) => Binding::Numbers(values.iter().map(|&x| f64::from(x)).collect()),
                     Values::Ints(values) => Binding::Numbers(values.iter().map(|&x| f64::from(x)).collect()),

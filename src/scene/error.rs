@@ -1,6 +1,7 @@
 //! What can be wrong with a scene: each kind with a stable code, and the place that it points to.
 
 use super::camera::CameraFlaw;
+use super::obj::LineFlaw;
 use crate::compile::{CompileError, GroupError};
 use std::fmt;
 use std::sync::Arc;
@@ -216,18 +217,26 @@ pub enum SceneProblem {
 #[non_exhaustive]
 pub enum MeshFlaw {
     /// It cannot be opened.
-    Unopened,
-    /// It is not text.
-    NotText,
-    /// The text is no OBJ.
-    NotObj {
-        /// What the reader says.
+    Unopened {
+        /// What the system says.
         reason: String,
     },
-    /// A vertex is infinite or no number.
+    /// It is too large to be read.
+    TooLarge {
+        /// The most bytes there may be.
+        most: u64,
+    },
+    /// It is not text.
+    NotText,
+    /// A line is wrong.
+    Line {
+        /// The line, from 1.
+        line: u32,
+        /// What is wrong with it.
+        flaw: LineFlaw,
+    },
+    /// The element's own placement puts a vertex where no single reaches.
     NotFinite,
-    /// A face names a vertex that is not there.
-    NoSuchVertex,
     /// There is no face in it.
     NoFaces,
 }
@@ -323,14 +332,14 @@ impl fmt::Display for SceneProblem {
 
 impl fmt::Display for MeshFlaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            MeshFlaw::Unopened => "it cannot be opened",
-            MeshFlaw::NotText => "it is not text, so it is no OBJ file",
-            MeshFlaw::NotObj { reason } => reason,
-            MeshFlaw::NotFinite => "a vertex is not a finite number",
-            MeshFlaw::NoSuchVertex => "a face names a vertex that is not there",
-            MeshFlaw::NoFaces => "it has no faces",
-        })
+        match self {
+            MeshFlaw::Unopened { reason } => write!(f, "it cannot be opened: {reason}"),
+            MeshFlaw::TooLarge { most } => write!(f, "it is too large; {} MB are the most", most >> 20),
+            MeshFlaw::NotText => f.write_str("it is not text, so it is no OBJ file"),
+            MeshFlaw::Line { line, flaw } => write!(f, "line {line}: {flaw}"),
+            MeshFlaw::NotFinite => f.write_str("it is placed so far away that a vertex is not a finite number"),
+            MeshFlaw::NoFaces => f.write_str("it has no faces"),
+        }
     }
 }
 

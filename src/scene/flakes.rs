@@ -46,7 +46,7 @@ impl Flakes {
     /// Adds equilateral triangles, as one object.
     pub fn add(&self, geometry: &mut Geometry, material: u32, place: &Place) {
         let object = geometry.objects.len() as u32;
-        let mut area = 0.0;
+        let (mut area, before) = (0.0, geometry.primitives.len());
         for i in 0..self.count {
             // The sequence ends after 2^16 points. Hashed, the next block's seed is not that of another element.
             let seed = hash2(self.seed, i >> 16);
@@ -68,6 +68,6 @@ impl Flakes {
                 geometry.primitives.push(Primitive { shape, object, normals: Primitive::NONE, uvs: Primitive::NONE });
             }
         }
-        geometry.objects.push(Object { material, surface_area: area as f32, place: place.clone() });
+        geometry.add_object(Object { material, surface_area: area as f32, place: place.clone() }, before);
     }
 }

@@ -91,6 +91,13 @@ pub struct Geometry {
 }
 
 impl Geometry {
+    /// Adds the object of the primitives from `first` on; one without primitives, which no ray could meet, is left out.
+    pub(super) fn add_object(&mut self, object: Object, first: usize) {
+        if self.primitives.len() > first {
+            self.objects.push(object);
+        }
+    }
+
     /// Adds an object of one analytic primitive.
     pub fn add_single(&mut self, shape: Shape, material: u32, place: Place) {
         let object = self.objects.len() as u32;

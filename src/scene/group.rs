@@ -148,4 +148,9 @@ pub struct GroupSpec {
 pub trait GroupCompiler {
     /// Compiles one group, or says what is wrong with it and where.
     fn compile(&self, spec: &GroupSpec) -> Result<exec::Group, SceneError>;
+
+    /// What was odd in the groups since the last call, as lines that begin with a place; asked after each group.
+    fn take_warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
 }

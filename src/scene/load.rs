@@ -21,7 +21,7 @@ impl Scene {
         compiler: &dyn GroupCompiler,
     ) -> Result<Scene, SceneError> {
         let document = xml::parse(&source.text, &source.name)?;
-        let root = xml::Element { node: document.root_element(), file: source.name.clone() };
+        let root = xml::Element::root(&document, &source.name);
         if root.tag() != "World" {
             return Err(SceneError::at(root.place(), SceneProblem::NotAWorld { tag: root.tag().to_owned() })
                 .with_help("a scene is one <World> element"));
@@ -29,6 +29,7 @@ impl Scene {
         let mut folders = vec![source.folder.clone()];
         folders.extend(search.iter().cloned());
         let mut builder = Builder::new(source.name.to_string(), folders, compiler);
+        root.children().for_each(|element| builder.announce(&element));
         for element in root.only_children()? {
             builder.element(&element)?;
         }

@@ -1,10 +1,90 @@
-//! Reads OBJ meshes, with the material names of their MTL files.
+//! Meshes: from the file that an element names to triangles with materials.
 
-use super::error::{MeshFlaw, Place, SceneError, SceneProblem};
+use super::error::{MeshFlaw, Place};
 use super::geometry::{Geometry, Object, Primitive, Shape};
-use glam::{Vec2, Vec3};
-use std::collections::HashMap;
+use super::obj::{self, Corner, Note, ObjFlaw, ObjMesh};
+use super::placement::Placement;
+use glam::Vec3;
+use std::borrow::Cow;
+use std::collections::{BTreeSet, HashMap};
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
+
+/// The largest mesh that is read, in bytes: some forty million triangles.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// The largest MTL file that is looked at.
+const MOST_LIBRARY_BYTES: u64 = 16 << 20;
+
+/// A mesh file, read.
+#[derive(Debug)]
+pub struct MeshFile {
+    mesh: ObjMesh,
+    /// What is odd in it and in its MTL files, as warnings.
+    pub warnings: Vec<String>,
+}
+
+impl MeshFile {
+    /// Reads an OBJ file, and looks for what is odd in the MTL files that it names.
+    ///
+    /// # Errors
+    /// It cannot be opened, is too large, or is no OBJ.
+    pub fn read(path: &Path) -> Result<Self, MeshFlaw> {
+        let text = bytes_of(path, MOST_BYTES)?;
+        let mesh = obj::read(&text).map_err(|flaw| match flaw {
+            ObjFlaw::NotText => MeshFlaw::NotText,
+            ObjFlaw::Line { line, flaw } => MeshFlaw::Line { line, flaw },
+        })?;
+        if mesh.ends.is_empty() {
+            return Err(MeshFlaw::NoFaces);
+        }
+        let mut warnings: Vec<String> = mesh.notes.warnings(&path.display().to_string()).collect();
+        for library in &mesh.libraries {
+            check_library(path, library, &mut warnings);
+        }
+        Ok(MeshFile { mesh, warnings })
+    }
+}
+
+/// The bytes of a file, of at most `most`; also where the system does not know how many there are.
+fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, MeshFlaw> {
+    let unopened = |error: std::io::Error| MeshFlaw::Unopened { reason: error.to_string() };
+    let file = File::open(path).map_err(unopened)?;
+    let size = file.metadata().map_err(unopened)?.len();
+    let mut bytes = Vec::new();
+    if size <= most {
+        bytes.reserve_exact(size as usize + 1);
+        file.take(most + 1).read_to_end(&mut bytes).map_err(unopened)?;
+    }
+    if size.max(bytes.len() as u64) > most { Err(MeshFlaw::TooLarge { most }) } else { Ok(bytes) }
+}
+
+/// Warns of what is odd in an MTL file, and of one that is not there: material names are matched all the same.
+fn check_library(mesh: &Path, library: &Note, warnings: &mut Vec<String>) {
+    let folder = mesh.parent().unwrap_or(Path::new(""));
+    let whole = folder.join(&library.text);
+    // One name with spaces in it, or several names.
+    let files = match whole.is_file() {
+        true => vec![whole],
+        false => library.text.split_whitespace().map(|name| folder.join(name)).collect(),
+    };
+    for file in files {
+        let shown = file.display().to_string();
+        let bytes = match file.is_file() {
+            true => bytes_of(&file, MOST_LIBRARY_BYTES),
+            false => Err(MeshFlaw::Unopened { reason: "there is no such file".to_owned() }),
+        };
+        match bytes {
+            Ok(text) => warnings.extend(obj::check_library(&text).warnings(&shown)),
+            Err(flaw) => {
+                let place = format!("{}:{}", mesh.display(), library.line);
+                warnings.push(format!("{place}: warning: `{shown}`: {flaw}; materials are matched by name without it"));
+            }
+        }
+    }
+}
 
 /// How an OBJ's names find their shader groups.
 pub struct MaterialNames<'a> {
@@ -15,56 +95,61 @@ pub struct MaterialNames<'a> {
 }
 
 impl MaterialNames<'_> {
-    fn find(&self, name: &str) -> u32 {
-        self.by_name.get(name).copied().unwrap_or(self.last)
+    /// The group of a name, or of the first of several that has one.
+    fn find(&self, name: &str) -> Option<u32> {
+        let whole = self.by_name.get(name);
+        whole.or_else(|| name.split_whitespace().find_map(|word| self.by_name.get(word))).copied()
     }
 }
 
-/// Adds the mesh of `path` to `geometry`; gives the number of triangles without area, which are left out.
+/// What has become of the faces of a mesh.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Added {
+    /// Triangles with an area.
+    pub kept: usize,
+    /// Triangles without one, which are left out.
+    pub degenerate: usize,
+    /// Material names without a shader group, where others have one.
+    pub unmatched: Vec<String>,
+}
+
+/// Adds a mesh to `geometry`.
+///
+/// As in testrender, shapes are matched by their own name only when no material name matches. Differs from testrender:
+/// the names are those of `usemtl`, whether an MTL file has them or not.
+///
+/// # Errors
+/// The placement puts a vertex beyond what a single can hold.
 pub fn add_mesh(
     geometry: &mut Geometry,
-    path: &Path,
+    file: &MeshFile,
+    placement: Option<&Placement>,
     names: &MaterialNames,
     place: &Place,
-) -> Result<usize, SceneError> {
-    let fail = |flaw| SceneError::at(place.clone(), SceneProblem::Mesh { file: path.display().to_string(), flaw });
-    let options =
-        tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
-    let (models, materials) = tobj::load_obj(path, &options).map_err(|e| fail(complaint(&e)))?;
-    // A missing MTL is no mistake: OBJ files are often passed on without theirs.
-    let materials = materials.unwrap_or_default();
-    // As in testrender, shapes are matched by their own name only when no material name matches.
-    let by_material = materials.iter().any(|m| names.by_name.contains_key(&m.name));
-    let mut degenerate = 0;
-    let mut shape_start = geometry.objects.len();
-    let mut previous: Option<&str> = None;
-    for model in &models {
-        if previous != Some(model.name.as_str()) {
-            share_area(geometry, shape_start);
-            shape_start = geometry.objects.len();
-            previous = Some(&model.name);
+) -> Result<Added, MeshFlaw> {
+    let mesh = &file.mesh;
+    let mut adder = Adder::new(geometry, mesh, placement)?;
+    let used: BTreeSet<u32> = mesh.parts.iter().map(|part| part.material).filter(|&name| name != 0).collect();
+    let named = |name: u32| names.find(&mesh.names[name as usize]);
+    let by_material = used.iter().any(|&name| named(name).is_some());
+    for shape in mesh.parts.chunk_by(|a, b| a.shape == b.shape) {
+        let first = adder.geometry.objects.len();
+        for part in shape {
+            let name = if by_material { part.material } else { part.shape_name };
+            let material = Some(name).filter(|&name| name != 0).and_then(named).unwrap_or(names.last);
+            adder.add(part.faces.clone(), material, first, place);
         }
-        let material = match model.mesh.material_id.and_then(|id| materials.get(id)) {
-            Some(m) if by_material => names.find(&m.name),
-            _ if by_material => names.last,
-            _ => names.find(&model.name),
-        };
-        degenerate += add_shape(geometry, &model.mesh, material, place).map_err(fail)?;
+        share_area(adder.geometry, first);
     }
-    share_area(geometry, shape_start);
-    if models.iter().all(|m| m.mesh.indices.is_empty()) {
-        return Err(fail(MeshFlaw::NoFaces));
+    let mut added = adder.added;
+    if by_material {
+        added.unmatched = used
+            .into_iter()
+            .filter(|&name| named(name).is_none())
+            .map(|name| mesh.names[name as usize].clone())
+            .collect();
     }
-    Ok(degenerate)
-}
-
-/// What is wrong with a mesh file, for people.
-fn complaint(error: &tobj::LoadError) -> MeshFlaw {
-    match error {
-        tobj::LoadError::ReadError => MeshFlaw::NotText,
-        tobj::LoadError::OpenFileFailed => MeshFlaw::Unopened,
-        other => MeshFlaw::NotObj { reason: other.to_string() },
-    }
+    Ok(added)
 }
 
 /// The parts of one shape that differ only in material are one surface to `surfacearea()`.
@@ -73,47 +158,109 @@ fn share_area(geometry: &mut Geometry, start: usize) {
     geometry.objects[start..].iter_mut().for_each(|o| o.surface_area = total);
 }
 
-fn add_shape(geometry: &mut Geometry, mesh: &tobj::Mesh, material: u32, place: &Place) -> Result<usize, MeshFlaw> {
-    if mesh.positions.iter().any(|x| !x.is_finite()) {
-        return Err(MeshFlaw::NotFinite);
-    }
-    let position = |i: u32| mesh.positions.get(3 * i as usize..3 * i as usize + 3).map(Vec3::from_slice);
-    let normal = |i: u32| mesh.normals.get(3 * i as usize..3 * i as usize + 3).map(Vec3::from_slice);
-    let uv = |i: u32| mesh.texcoords.get(2 * i as usize..2 * i as usize + 2).map(Vec2::from_slice);
-    let object = geometry.objects.len() as u32;
-    let (mut area, mut degenerate) = (0.0f64, 0);
-    for (face, corners) in mesh.indices.chunks_exact(3).enumerate() {
-        let Some([a, b, c]) = three(corners, position) else {
-            return Err(MeshFlaw::NoSuchVertex);
+/// Turns faces into triangles.
+struct Adder<'a> {
+    geometry: &'a mut Geometry,
+    mesh: &'a ObjMesh,
+    positions: Cow<'a, [Vec3]>,
+    normals: Cow<'a, [Vec3]>,
+    mirrors: bool,
+    added: Added,
+    /// Corners of a polygon, and its triangles.
+    points: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl<'a> Adder<'a> {
+    fn new(geometry: &'a mut Geometry, mesh: &'a ObjMesh, placement: Option<&Placement>) -> Result<Self, MeshFlaw> {
+        let (positions, normals) = match placement {
+            None => (Cow::from(&mesh.positions), Cow::from(&mesh.normals)),
+            Some(placement) => {
+                let positions: Vec<Vec3> = mesh.positions.iter().map(|p| placement.point(*p)).collect();
+                (
+                    Cow::from(positions),
+                    Cow::from(mesh.normals.iter().copied().map(placement.normals()).collect::<Vec<_>>()),
+                )
+            }
         };
-        let shape = Shape::Triangle { a, b, c };
-        if shape.area() <= 0.0 {
-            degenerate += 1;
-            continue;
+        if !positions.iter().all(|p| p.is_finite()) {
+            return Err(MeshFlaw::NotFinite);
         }
-        area += f64::from(shape.area());
-        let own = |indices: &'_ [u32]| indices.get(3 * face..3 * face + 3).map(|s| [s[0], s[1], s[2]]);
-        let normals = own(&mesh.normal_indices).and_then(|i| three(&i, normal)).filter(|n| n.iter().all(is_direction));
-        let uvs = own(&mesh.texcoord_indices).and_then(|i| three(&i, uv)).filter(|t| t.iter().all(|t| t.is_finite()));
-        geometry.primitives.push(Primitive {
-            shape,
-            object,
-            normals: push(&mut geometry.normals, normals),
-            uvs: push(&mut geometry.uvs, uvs),
-        });
+        let triangles = mesh.corners.len() - 2 * mesh.ends.len();
+        geometry.primitives.reserve(triangles);
+        geometry.normals.reserve(if mesh.normals.is_empty() { 0 } else { triangles });
+        geometry.uvs.reserve(if mesh.uvs.is_empty() { 0 } else { triangles });
+        let mirrors = placement.is_some_and(Placement::mirrors);
+        let (added, points, triangles) = (Added::default(), Vec::new(), Vec::new());
+        Ok(Adder { geometry, mesh, positions, normals, mirrors, added, points, triangles })
     }
-    geometry.objects.push(Object { material, surface_area: area as f32, place: place.clone() });
-    Ok(degenerate)
+
+    /// Adds faces of one material to the object of it, of those from `first` on, or to a new one.
+    fn add(&mut self, faces: Range<usize>, material: u32, first: usize, place: &Place) {
+        let known = self.geometry.objects[first..].iter().position(|object| object.material == material);
+        let object = known.map_or(self.geometry.objects.len(), |at| first + at);
+        let before = self.geometry.primitives.len();
+        let area: f64 = faces.map(|face| self.face(face, object as u32)).sum();
+        if known.is_some() {
+            self.geometry.objects[object].surface_area += area as f32;
+        } else {
+            self.geometry.add_object(Object { material, surface_area: area as f32, place: place.clone() }, before);
+        }
+    }
+
+    /// Adds a face; gives its area.
+    #[inline]
+    fn face(&mut self, number: usize, object: u32) -> f64 {
+        let mesh = self.mesh;
+        let corners = mesh.face(number);
+        if let &[a, b, c] = corners {
+            return self.triangle([a, b, c], object);
+        }
+        self.points.clear();
+        self.points.extend(corners.iter().map(|corner| self.positions[corner.position as usize]));
+        let mut triangles = std::mem::take(&mut self.triangles);
+        triangles.clear();
+        obj::triangulate(&self.points, &mut triangles);
+        let area = triangles.iter().map(|t| self.triangle(t.map(|i| corners[i as usize]), object)).sum();
+        self.triangles = triangles;
+        area
+    }
+
+    /// Adds a triangle unless it has no area; gives its area.
+    #[inline]
+    fn triangle(&mut self, [first, mut second, mut third]: [Corner; 3], object: u32) -> f64 {
+        if self.mirrors {
+            std::mem::swap(&mut second, &mut third);
+        }
+        let corners = [first, second, third];
+        let [a, b, c] = corners.map(|corner| self.positions[corner.position as usize]);
+        let shape = Shape::Triangle { a, b, c };
+        let area = shape.area();
+        // Not a number where the edges are too long for a single.
+        if area <= 0.0 || area.is_nan() {
+            self.added.degenerate += 1;
+            return 0.0;
+        }
+        self.added.kept += 1;
+        let normals = all(corners.map(|corner| self.normals.get(corner.normal as usize).copied()));
+        let uvs = all(corners.map(|corner| self.mesh.uvs.get(corner.uv as usize).copied()));
+        let normals = push(&mut self.geometry.normals, normals.filter(|n| n.iter().all(is_direction)));
+        let uvs = push(&mut self.geometry.uvs, uvs);
+        self.geometry.primitives.push(Primitive { shape, object, normals, uvs });
+        f64::from(area)
+    }
 }
 
 fn is_direction(n: &Vec3) -> bool {
-    n.is_finite() && n.length_squared() > 0.0
+    n.length_squared() > 0.0
 }
 
-fn three<T: Copy>(indices: &[u32], get: impl Fn(u32) -> Option<T>) -> Option<[T; 3]> {
-    Some([get(indices[0])?, get(indices[1])?, get(indices[2])?])
+#[inline]
+fn all<T: Copy>([a, b, c]: [Option<T>; 3]) -> Option<[T; 3]> {
+    Some([a?, b?, c?])
 }
 
+#[inline]
 fn push<T>(list: &mut Vec<T>, value: Option<T>) -> u32 {
     match value {
         Some(value) => {

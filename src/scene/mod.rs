@@ -7,12 +7,16 @@ mod build;
 mod camera;
 mod compiler;
 mod error;
+mod extent;
 mod flakes;
 mod geometry;
 mod group;
 mod load;
 mod mesh;
 mod nearest;
+mod obj;
+mod placement;
+mod places;
 // The data of the room, which is called as the room is.
 #[allow(clippy::module_inception)]
 mod scene;
@@ -28,6 +32,7 @@ pub use error::{MeshFlaw, Place, SceneError, SceneProblem};
 pub use geometry::{Geometry, Object, Primitive, Shape};
 pub use group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
 pub use nearest::nearest;
+pub use obj::{Attribute as MeshAttribute, LineFlaw};
 pub use scene::{Background, Material, Options, Scene};
 pub use shipped::SHIPPED;
 pub use source::SceneSource;

@@ -19,6 +19,8 @@ pub struct Options {
     pub no_jitter: Option<bool>,
     /// Shows a shader global in place of the picture: 1 Ng, 2 N, 3 dPdu, 4 dPdv, 5 uv.
     pub show_globals: Option<u32>,
+    /// Width and height in pixels that the `<Camera>` states with `res`; unlike the others, the command line wins over it.
+    pub resolution: Option<[u32; 2]>,
 }
 
 /// A shader group, compiled, and what the scene says of it.

@@ -1,11 +1,13 @@
 //! Shaders kept in the binary, so that a scene finds them wherever velour is installed.
 
 /// File name and text of each, in the order of their names; a file of the same name in a scene's folders wins.
-pub const SHIPPED: [(&str, &str); 7] = [
+pub const SHIPPED: [(&str, &str); 9] = [
     ("cloth.osl", include_str!("../../shaders/cloth.osl")),
+    ("curtain.osl", include_str!("../../shaders/curtain.osl")),
     ("emitter.osl", include_str!("../../shaders/emitter.osl")),
     ("layers.osl", include_str!("../../shaders/layers.osl")),
     ("matte.osl", include_str!("../../shaders/matte.osl")),
+    ("models.osl", include_str!("../../shaders/models.osl")),
     ("sky.osl", include_str!("../../shaders/sky.osl")),
     ("velvet.osl", include_str!("../../shaders/velvet.osl")),
     ("weave.osl", include_str!("../../shaders/weave.osl")),

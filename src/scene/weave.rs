@@ -128,11 +128,9 @@ impl Weave {
         geometry.uvs.reserve_exact(triangles);
         for (along_x, material) in [(true, warp), (false, weft)] {
             let count = if along_x { self.warp } else { self.weft };
-            geometry.objects.push(Object { material, surface_area: 0.0, place: place.clone() });
+            let before = geometry.primitives.len();
             let area: f64 = (0..count).map(|yarn| self.yarn(geometry, along_x, yarn)).sum();
-            if let Some(object) = geometry.objects.last_mut() {
-                object.surface_area = area as f32;
-            }
+            geometry.add_object(Object { material, surface_area: area as f32, place: place.clone() }, before);
         }
     }
 
@@ -168,7 +166,7 @@ impl Weave {
     fn yarn(&self, geometry: &mut Geometry, along_x: bool, yarn: u32) -> f64 {
         let (count, crossings) = if along_x { (self.warp, self.weft) } else { (self.weft, self.warp) };
         let (steps, sides) = (crossings * self.segments, self.sides as usize);
-        let object = geometry.objects.len() as u32 - 1;
+        let object = geometry.objects.len() as u32;
         let across = (yarn as f32 + 0.5) / count as f32;
         let (mut last, mut area) = (Vec::new(), 0.0);
         for step in 0..=steps {

@@ -2,33 +2,73 @@
 
 use super::error::{Place, SceneError, SceneProblem};
 use super::nearest::nearest;
+use super::places::Places;
 use glam::Vec3;
 use roxmltree::{Attribute, Document, Node};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// An element and the file it is in.
+/// An element and the text it is in.
 #[derive(Clone)]
 pub struct Element<'d, 'i> {
     /// The element.
     pub node: Node<'d, 'i>,
-    /// The file's name, for places.
-    pub file: Arc<str>,
+    places: Arc<Places<'i>>,
 }
+
+/// The most attributes of an element. The parser compares each with all others.
+const MOST_ATTRIBUTES: usize = 1024;
 
 /// Parses `text`; the error has its place in `file`.
 pub fn parse<'i>(text: &'i str, file: &Arc<str>) -> Result<Document<'i>, SceneError> {
+    let not_xml = |place, reason: String| SceneError::at(place, SceneProblem::NotXml { reason });
+    if let Some(offset) = crowded(text.as_bytes()) {
+        let reason = format!("an element has more than {MOST_ATTRIBUTES} attributes");
+        return Err(not_xml(Places::new(file, text).at(offset), reason).with_help("use several elements"));
+    }
     Document::parse(text).map_err(|e| {
         let pos = e.pos();
         let place = Place { file: file.clone(), line: pos.row, column: pos.col };
         // The parser ends its sentence with the position, which the place already says.
         let message = e.to_string();
-        let reason = message.split(" at ").next().unwrap_or(&message).to_owned();
-        SceneError::at(place, SceneProblem::NotXml { reason })
+        not_xml(place, message.split(" at ").next().unwrap_or(&message).to_owned())
     })
 }
 
+/// Where the first tag begins that has too many values in quotes. Comments and sections of plain text have no tags.
+fn crowded(text: &[u8]) -> Option<usize> {
+    let find = |from: usize, what: &[u8]| text[from..].windows(what.len()).position(|w| w == what).map(|at| from + at);
+    let mut at = 0;
+    while let Some(start) = find(at, b"<") {
+        at = start + 1;
+        let end = [(&b"<!--"[..], &b"-->"[..]), (b"<![CDATA[", b"]]>"), (b"<?", b"?>")];
+        if let Some((_, end)) = end.iter().find(|(begin, _)| text[start..].starts_with(begin)) {
+            at = find(at, end)?;
+            continue;
+        }
+        let mut values = 0;
+        while let Some(quote) = text[at..].iter().position(|b| matches!(b, b'"' | b'\'' | b'>')).map(|k| at + k) {
+            at = quote + 1;
+            if text[quote] == b'>' {
+                break;
+            }
+            at += text[at..].iter().position(|b| *b == text[quote])? + 1;
+            values += 1;
+            if values > MOST_ATTRIBUTES {
+                return Some(start);
+            }
+        }
+    }
+    None
+}
+
 impl<'d, 'i> Element<'d, 'i> {
+    /// The root of a document of `file`.
+    pub fn root(document: &'d Document<'i>, file: &Arc<str>) -> Self {
+        let places = Arc::new(Places::new(file, document.input_text()));
+        Element { node: document.root_element(), places }
+    }
+
     /// The tag.
     pub fn tag(&self) -> &'d str {
         self.node.tag_name().name()
@@ -36,8 +76,7 @@ impl<'d, 'i> Element<'d, 'i> {
 
     /// The place of a byte of the document.
     pub fn place_at(&self, offset: usize) -> Place {
-        let pos = self.node.document().text_pos_at(offset);
-        Place { file: self.file.clone(), line: pos.row, column: pos.col }
+        self.places.at(offset)
     }
 
     /// Where the element begins.
@@ -73,8 +112,8 @@ impl<'d, 'i> Element<'d, 'i> {
 
     /// The child elements, whatever is between them.
     pub fn children(&self) -> impl Iterator<Item = Element<'d, 'i>> + use<'d, 'i> {
-        let file = self.file.clone();
-        self.node.children().filter(|n| n.is_element()).map(move |node| Element { node, file: file.clone() })
+        let places = self.places.clone();
+        self.node.children().filter(|n| n.is_element()).map(move |node| Element { node, places: places.clone() })
     }
 
     /// The attributes.
@@ -120,16 +159,20 @@ impl<'d, 'i> Element<'d, 'i> {
 
     /// A triple `x,y,z`, when the attribute is there.
     pub fn vector(&self, name: &str) -> Result<Option<Vec3>, SceneError> {
-        let Some(text) = self.node.attribute(name) else { return Ok(None) };
-        let numbers: Option<Vec<f32>> = text
-            .split(|c: char| c == ',' || c.is_whitespace())
-            .filter(|part| !part.is_empty())
-            .map(|part| part.parse::<f32>().ok().filter(|x| x.is_finite()))
-            .collect();
-        match numbers.as_deref() {
+        let what = "three numbers `x,y,z`";
+        match self.numbers(name, what)?.as_deref() {
+            None => Ok(None),
             Some(&[x, y, z]) => Ok(Some(Vec3::new(x, y, z))),
-            _ => Err(self.bad_value(name, "three numbers `x,y,z`")),
+            Some(_) => Err(self.bad_value(name, what)),
         }
+    }
+
+    /// Finite numbers parted by commas or spaces, when the attribute is there.
+    pub fn numbers(&self, name: &str, what: &str) -> Result<Option<Vec<f32>>, SceneError> {
+        let Some(text) = self.node.attribute(name) else { return Ok(None) };
+        let parts = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|part| !part.is_empty());
+        let numbers: Option<Vec<f32>> = parts.map(|part| part.parse().ok().filter(|x: &f32| x.is_finite())).collect();
+        numbers.map(Some).ok_or_else(|| self.bad_value(name, what))
     }
 
     /// A required triple.
@@ -173,5 +216,22 @@ impl<'d, 'i> Element<'d, 'i> {
             expected: expected.to_owned(),
         };
         SceneError::at(self.value_place(name), problem)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_element_of_too_many_attributes_is_found_and_no_other_text() {
+        let many: String = (0..=MOST_ATTRIBUTES).map(|i| format!(" a{i}='<b c=\">'")).collect();
+        let few: String = (0..MOST_ATTRIBUTES).map(|i| format!(" a{i}=\"'\"")).collect();
+        assert_eq!(crowded(format!("<a x='1'><b{many}/></a>").as_bytes()), Some(9));
+        for text in [format!("<!--{many}-->"), format!("<?p{many}?>"), format!("<b{few}>{many}</b>"), "<a b='".into()] {
+            assert_eq!(crowded(text.as_bytes()), None, "{text}");
+        }
+        let section = format!("<a><![CDATA[<b{many}>]]></a>");
+        assert_eq!(crowded(section.as_bytes()), None);
     }
 }

@@ -16,7 +16,8 @@ fn every_format_is_written_whole_and_nothing_is_left_beside_it() {
             let read = image::open(&path).unwrap().to_rgb32f();
             assert_eq!((read.width(), read.height()), (5, 3));
             if extension == "exr" {
-                assert_eq!(read.get_pixel(4, 2).0, [0.25, 0.5, 1.0]);
+                // With alpha, a picture of nothing but sky is empty.
+                assert_eq!(read.get_pixel(4, 2).0, if alpha { [0.0; 3] } else { [0.25, 0.5, 1.0] });
             }
         }
     }
@@ -43,14 +44,21 @@ fn a_name_that_cannot_be_written_is_refused_before_rendering() {
     assert!(check("picture.EXR".as_ref()).is_ok());
 }
 
-/// Scenes that are shown with many triangles, here with few, so that an unoptimised build renders them at once.
+/// Every scene that is shipped; those of many triangles with few, so that an unoptimised build renders them at once.
 #[test]
-fn shipped_scenes_of_many_triangles_render() {
+fn shipped_scenes_render() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/scenes");
     let cases = [
         ("million", [("warp=\"74\"", "warp=\"6\""), ("weft=\"74\"", "weft=\"6\"")], 6 * 6 * 6 * 8 * 4 + 2),
         ("lamps", [("warp=\"40\"", "warp=\"5\""), ("weft=\"48\"", "weft=\"4\"")], 5 * 4 * 5 * 8 * 4 + 1002),
         ("layers", [("<World>", "<World>"), ("</World>", "</World>")], 5),
+        ("spheres", [("<World>", "<World>"), ("</World>", "</World>")], 7),
+        ("figure1", [("<World>", "<World>"), ("</World>", "</World>")], 7),
+        ("figure3", [("<World>", "<World>"), ("</World>", "</World>")], 3),
+        ("figure3-back", [("<World>", "<World>"), ("</World>", "</World>")], 3),
+        ("figure4", [("<World>", "<World>"), ("</World>", "</World>")], 10),
+        ("curtain", [("<World>", "<World>"), ("</World>", "</World>")], 74),
+        ("models", [("<World>", "<World>"), ("</World>", "</World>")], 22),
     ];
     for (name, fewer, primitives) in cases {
         let mut text = std::fs::read_to_string(folder.join(format!("{name}.xml"))).unwrap();
@@ -65,7 +73,7 @@ fn shipped_scenes_of_many_triangles_render() {
         let settings = velour::render::Settings { width: 24, height: 16, samples: 4, ..Default::default() };
         let settings = settings.with_options(&scene.options);
         let image = velour::render::render(&scene, &settings, &velour::render::Silent).unwrap();
-        assert!(image.mean().iter().all(|m| *m > 0.005 && *m < 3.0), "{name}: {:?}", image.mean());
+        assert!(image.mean().iter().all(|m| *m > 0.002 && *m < 3.0), "{name}: {:?}", image.mean());
         assert!(image.about.reports.is_empty(), "{name}: {:?}", image.about.reports);
     }
 }

@@ -21,12 +21,12 @@ fn furnace(shader: &str, change: impl FnOnce(&mut Settings)) -> Image {
     })
 }
 
-/// The mean over what the sphere covers: the sky is 1, so what a pixel shows of it can be taken away.
+/// The mean over what the sphere covers: with alpha, the sky beside it is left out.
 fn over_sphere(image: &Image) -> f64 {
     let (mut light, mut cover) = (0.0, 0.0);
     for pixel in image.pixels.chunks_exact(4) {
         let alpha = f64::from(pixel[3]);
-        light += f64::from(pixel[0]) - (1.0 - alpha);
+        light += f64::from(pixel[0]);
         cover += alpha;
     }
     light / cover
@@ -158,7 +158,12 @@ fn rough_glass_loses_what_single_scattering_loses() {
 #[test]
 fn a_clear_sphere_leaves_no_trace() {
     let image = furnace("surface it() { Ci = transparent(); }", |_| ());
-    assert!(image.pixels.chunks_exact(4).all(|p| p == [1.0, 1.0, 1.0, 0.0]));
+    assert!(image.pixels.iter().all(|p| *p == 0.0));
+    let opaque = furnace("surface it() { Ci = transparent(); }", |s| s.alpha = false);
+    assert!(opaque.pixels.iter().all(|p| *p == 1.0));
+    // What amplifies is no less than nothing.
+    let image = furnace("surface it() { Ci = 2 * transparent(); }", |_| ());
+    assert!(image.pixels.iter().all(|p| *p == 0.0));
 }
 
 #[test]

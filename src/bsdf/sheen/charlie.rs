@@ -1,5 +1,6 @@
 //! The Charlie distribution: an exponentiated sine, whose micronormals lie mostly near the horizon.
 
+use crate::bsdf::limited;
 use crate::bsdf::power::power;
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -9,11 +10,11 @@ pub const MIN_ROUGHNESS: f32 = 0.01;
 
 /// The roughness a closure asks for, brought into the domain of the model.
 ///
-/// Domain: any number. Gives: 0.01..1. Degenerate cases: zero, denormal and negative give 0.01. The paper allows (0, 1];
+/// Domain: any number. Gives: 0.01..1. Degenerate cases: zero, denormal, negative and NaN give 0.01. The paper allows (0, 1];
 /// (1 - r)² of its fit would fold r = 2 back to 0 if it were not clamped.
 #[inline(always)]
 pub fn clamp_roughness(r: f32) -> f32 {
-    r.clamp(MIN_ROUGHNESS, 1.0)
+    limited(r, MIN_ROUGHNESS, 1.0)
 }
 
 /// sin² of the angle between the normal and the half vector of two local directions.

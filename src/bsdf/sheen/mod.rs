@@ -4,10 +4,8 @@
 //! 34 %, costs less and never reflects more than arrives, instead of the published fit, which stays selectable.
 //!
 //! Decision (2026-11-22): roughness is clamped to 0.01..1, because below it the exponent of D passes 50 and single
-//! floats lose D, instead of OSL's 0.06. `Differs from OSL:` its renderers clamp at 0.06. The albedo evaluators are
-//! fitted from 0.06; below it they give the albedo of 0.06, which for the exact terms is too large (by up to
-//! 0.34 softened, 0.26 not, at r = 0.01): a base under such a sheen is too dark, never too bright. The published fit itself
-//! gains energy there, and its curve is too small by up to 0.2 at cosines below 0.03.
+//! floats lose D, instead of OSL's 0.06. `Differs from OSL:` its renderers clamp at 0.06. Albedo evaluators and samplers are
+//! fitted on the same range. The published fit gains energy below r = 0.07; its albedo is cut at 1 there, as everywhere.
 //!
 //! Decision (2026-11-22): the constants of the exact Lambda are fitted for the least error of the albedo (6.6e-5, Lambda within
 //! 0.57 %), because energy is what layering needs, instead of for the least error of Lambda alone (0.51 %, albedo 1.0e-4).
@@ -18,10 +16,12 @@
 //! below it they cancel, and roughness goes down to 0.01, so they are no default.
 
 pub mod albedo;
+pub mod albedo_table;
 pub mod charlie;
 pub mod fibers;
 pub mod fits;
 pub mod normals;
+pub mod proposals;
 pub mod reference;
 pub mod sampling;
 pub mod shadowing;
@@ -30,7 +30,7 @@ pub mod term;
 use super::{Choice, Eval, Params, Scatter, View, select};
 use albedo::AlbedoCurve;
 use glam::Vec3;
-use sampling::{Azimuth, Proposal};
+use sampling::{Aim, Proposal};
 use shadowing::{Exact, Published, Series, soften};
 use term::Shadowing;
 
@@ -135,18 +135,18 @@ impl<const SHADOWING: u8, const SOFT: bool> Scatter for Sheen<SHADOWING, SOFT> {
 
     #[inline(always)]
     fn view(&self, wo: Vec3) -> View {
-        let Azimuth { a, b, cos, sin } = self.proposal.view(wo);
-        [self.masking(wo), a, b, cos, sin]
+        let Aim { tilt, across, x, y } = self.proposal.view(wo);
+        [self.masking(wo), tilt, across, x, y]
     }
 
     #[inline(always)]
-    fn eval_from(&self, wo: Vec3, [masking, a, b, cos, sin]: View, wi: Vec3) -> Eval {
-        Eval { f_cos: self.f_cos(wo, masking, wi), pdf: self.proposal.pdf(Azimuth { a, b, cos, sin }, wi) }
+    fn eval_from(&self, wo: Vec3, [masking, tilt, across, x, y]: View, wi: Vec3) -> Eval {
+        Eval { f_cos: self.f_cos(wo, masking, wi), pdf: self.proposal.pdf(Aim { tilt, across, x, y }, wi) }
     }
 
     #[inline(always)]
-    fn sample_from(&self, _wo: Vec3, [_, a, b, cos, sin]: View, xi: Vec3) -> Vec3 {
-        self.proposal.sample(Azimuth { a, b, cos, sin }, xi)
+    fn sample_from(&self, _wo: Vec3, [_, tilt, across, x, y]: View, xi: Vec3) -> Vec3 {
+        self.proposal.sample(Aim { tilt, across, x, y }, xi)
     }
 
     #[inline(always)]

@@ -129,14 +129,14 @@ pub fn soften(lambda: f64, cos: f64) -> f64 {
     lambda.powf(1.0 + 2.0 * (1.0 - cos).powi(8))
 }
 
-/// G divided by 4 cos_i cos_o.
-fn visibility(model: Model, soft: bool, ci: f64, co: f64, r: f64) -> f64 {
+/// G divided by 4 cos_i cos_o, for a viewer of this cosine and Lambda.
+fn visibility(model: Model, soft: bool, ci: f64, (co, viewer): (f64, f64), r: f64) -> f64 {
     if model == Model::Ashikhmin {
         return 0.25 / (ci + co - ci * co);
     }
     let light = lambda(model, ci, r);
     let light = if soft { soften(light, ci) } else { light };
-    1.0 / (4.0 * ci * co * (1.0 + light + lambda(model, co, r)))
+    1.0 / (4.0 * ci * co * (1.0 + light + viewer))
 }
 
 /// D of a squared sine.
@@ -151,15 +151,17 @@ pub fn f(model: Model, soft: bool, wo: [f64; 3], wi: [f64; 3], r: f64) -> f64 {
     }
     let h: [f64; 3] = std::array::from_fn(|k| wo[k] + wi[k]);
     let across = h[0] * h[0] + h[1] * h[1];
-    distribution(across / (across + h[2] * h[2]), r) * visibility(model, soft, wi[2], wo[2], r)
+    distribution(across / (across + h[2] * h[2]), r)
+        * visibility(model, soft, wi[2], (wo[2], lambda(model, wo[2], r)), r)
 }
 
 /// Directional albedo by quadrature over light directions, view fixed.
 ///
 /// Source: double-exponential rules in the cosine, split at the view's, and in the azimuth.
-/// Gives: error below 1e-6 for 32 steps and 1e-4 for 16, cosines from 1e-4.
+/// Gives: error below 1e-6 for 40 steps, 1e-5 for 32 and 1e-4 for 24, cosines from 1e-4 and r from 0.01.
 pub fn albedo(model: Model, soft: bool, co: f64, r: f64, steps: usize) -> f64 {
     let so = ((1.0 - co) * (1.0 + co)).sqrt();
+    let viewer = (co, lambda(model, co, r));
     let azimuths = tanh_sinh(steps + steps / 2, 0.0, 0.5 * PI);
     let mut sum = 0.0;
     let mut parts = vec![0.0, 0.5, 1.0];
@@ -181,7 +183,7 @@ pub fn albedo(model: Model, soft: bool, co: f64, r: f64, steps: usize) -> f64 {
                 let across = difference * difference + 4.0 * so * si * s * s;
                 ring += azimuth.weight * distribution(across / (across + (co + ci) * (co + ci)), r);
             }
-            sum += node.weight * 4.0 * ring * ci * visibility(model, soft, ci, co, r);
+            sum += node.weight * 4.0 * ring * ci * visibility(model, soft, ci, viewer, r);
         }
     }
     sum

@@ -4,22 +4,23 @@ use super::usual::NORMAL;
 use crate::arguments;
 use crate::bsdf::Choice;
 use crate::bsdf::sheen::{ASHIKHMIN, EXACT, PUBLISHED, SERIES, Sheen, fibers::Fibers, normals::ByNormals};
-use crate::bsdf::velvet::Velvet;
+use crate::bsdf::velvet::{Form, Velvet, form_2000::Velvet2000};
 use crate::closure::arguments::{Argument, Color, Float, Int, Nested, Normal, Word};
 use crate::closure::definition::ClosureDef;
 use crate::closure::leaf::{LeafMaker, LobeRequest, PartId};
 use crate::closure::lobe_kind::LobeKind;
 use crate::closure::settings::{Layering, Shadowing, SheenSampling};
+use crate::closure::words::Words;
 use crate::lang::closures::{Claim, ParamSpec, TopAlbedo, Waiver};
 
 const ROUGHNESS: ParamSpec =
-    ParamSpec::about("Charlie roughness r, clamped to 0.01..1").tried(&[0.25, 0.06, 0.15, 0.5, 1.0]);
+    ParamSpec::about("Charlie roughness r, clamped to 0.01..1").tried(&[0.25, 0.01, 0.06, 0.15, 0.5, 1.0]);
 const LAYERING: ParamSpec = ParamSpec::about("how the base is scaled: \"min\" (default), \"view\" or \"kelemen\"");
 const SHADOWING: ParamSpec = ParamSpec::about(
     "shadowing term: \"exact\" (default), \"published\" (fit of the paper), \"ashikhmin\" (real-time visibility) or \"series\" (exact to 4e-6)",
 );
 const SAMPLING: ParamSpec = ParamSpec::about(
-    "how directions are drawn: \"ltc\" (default, a transformed cosine), \"uniform\", \"cosine\" or \"normals\" (half vector)",
+    "how directions are drawn: \"ltc\" (default, transformed cosines), \"uniform\", \"cosine\" or \"normals\" (half vector)",
 );
 const SOFTENING: ParamSpec =
     ParamSpec::about("1 (default) softens the terminator by eq. 4, 0 does not").tried(&[1.0, 0.0]);
@@ -47,7 +48,7 @@ const PUBLISHED_GAINS: Waiver = Waiver {
 const ASHIKHMIN_GAINS: Waiver = Waiver {
     claim: Claim::Energy,
     only: Some(("shadowing", "ashikhmin")),
-    why: "the real-time visibility does not belong to D: albedo up to 1.7 below r = 0.21",
+    why: "the real-time visibility does not belong to D: albedo up to 4.0 below r = 0.21",
 };
 const FIBERS: Waiver = Waiver {
     claim: Claim::Reciprocity,
@@ -255,12 +256,28 @@ arguments! {
         sigma: Float = ParamSpec::about("width of the inverted Gaussian, clamped to 0.06..1")
             .tried(&[0.3, 0.06, 0.15, 0.6, 1.0]),
     }
+    keywords {
+        form: Word<Form> = ParamSpec::about(
+            "\"2000\" (default): no light along the normal, grooves that hide each other; \"2007\": with a constant part, nothing hidden",
+        ),
+    }
+}
+
+impl Words for Form {
+    const ALL: &'static [(&'static str, Self)] = Form::ALL;
 }
 
 pub(super) fn ashikhmin_velvet() -> ClosureDef {
-    let doc = "velvet of Ashikhmin and Premoze 2007, to compare sheen with";
+    let doc = "velvet of Ashikhmin, Premoze and Shirley 2000, to compare sheen with, or in its form of 2007";
     ClosureDef::new("ashikhmin_velvet", doc, |a: AshikhminVelvet, leaf| {
         let frame = leaf.frame(a.N, None);
-        leaf.lobe(LobeKind::of::<Velvet>(), frame, &[a.sigma.0]);
+        let form = |leaf: &LeafMaker<'_>, lane: usize| Some(leaf.word(&a.form, lane).unwrap_or_default());
+        for (form, gate) in leaf.variants(a.form.varies(), form) {
+            let kind = match form {
+                Form::Of2000 => LobeKind::of::<Velvet2000>(),
+                Form::Of2007 => LobeKind::of::<Velvet>(),
+            };
+            leaf.add(LobeRequest { gate, ..LobeRequest::new(kind, frame, &[a.sigma.0]) });
+        }
     })
 }

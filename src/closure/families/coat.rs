@@ -5,7 +5,7 @@ use crate::arguments;
 use crate::bsdf::fresnel::Dielectric;
 use crate::bsdf::microfacet::{Ggx, MIN_ALPHA, Microfacet};
 use crate::bsdf::specular::Reflected;
-use crate::closure::arguments::{Color, Float, Nested, Normal, floats_vary};
+use crate::closure::arguments::{Color, Float, Int, Nested, Normal, floats_vary};
 use crate::closure::coats::Coating;
 use crate::closure::definition::ClosureDef;
 use crate::closure::leaf::{LeafMaker, LobeRequest};
@@ -28,10 +28,16 @@ arguments! {
         absorption: Color = ParamSpec::about("absorption coefficient of the coat, 1/length, >= 0").tried(&[0.0, 1.0]),
         thickness: Float = ParamSpec::about("thickness of the coat, length, >= 0").tried(&[0.1, 1.0]),
     }
+    keywords {
+        darkening: Int = ParamSpec::about(
+            "1 (default): light that the boundary throws back at a diffuse base is scattered again, which darkens all but white; 0: the formula of the paper",
+        )
+        .tried(&[1.0, 0.0]),
+    }
 }
 
 pub(super) fn coat() -> ClosureDef {
-    let doc = "a clear or tinted dielectric coat over any closure (Weidlich and Wilkie 2007)";
+    let doc = "a clear or tinted dielectric coat over any closure (Weidlich and Wilkie 2007), which darkens what is diffuse under it";
     ClosureDef::new("coat", doc, prepare).top_albedo(TopAlbedo::Boundary)
 }
 
@@ -72,5 +78,6 @@ fn prepare(a: Coat, leaf: &mut LeafMaker<'_>) {
     let widths = column(alpha, 0.0);
     let alpha = widths.iter().any(|&a| a >= MIN_ALPHA).then_some(widths);
     let frame = LeafMaker::frame_index(frame);
-    leaf.coat(Coating { frame, eta: column(eta, 1.0), alpha, depth: (!clear).then_some(depth) });
+    let darkens = (0..lanes).map(|lane| a.darkening.is_none_or(|word| tree.int(word.0, lane) != 0)).collect();
+    leaf.coat(Coating { frame, eta: column(eta, 1.0), alpha, depth: (!clear).then_some(depth), darkens });
 }

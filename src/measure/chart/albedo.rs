@@ -80,13 +80,13 @@ fn method(model: Model, name: impl Into<String>, run: impl Fn(f32, &[f32], &mut 
 /// Everything that can tell an albedo.
 fn methods(effort: &Effort) -> Vec<Method> {
     let mut list = Vec::new();
-    list.push(method(Model::ExactFit, "polynomial 4 x 3 (short)", |r, x, out| {
+    list.push(method(Model::ExactFit, "polynomial 5 x 5 (short)", |r, x, out| {
         curve_lanes(Polynomial::<SHORT_METHOD>(AlbedoCurve::exact(SheenAlbedo::Short, true, r)), x, out);
     }));
-    list.push(method(Model::ExactFit, "polynomial 7 x 5 (default)", |r, x, out| {
+    list.push(method(Model::ExactFit, "polynomial 9 x 7 (default)", |r, x, out| {
         curve_lanes(Polynomial::<FIT_METHOD>(AlbedoCurve::exact(SheenAlbedo::Fit, true, r)), x, out);
     }));
-    list.push(method(Model::ExactFit, "polynomial 13 x 9 (long)", |r, x, out| {
+    list.push(method(Model::ExactFit, "polynomial 13 x 13 (long)", |r, x, out| {
         curve_lanes(Polynomial::<LONG_METHOD>(AlbedoCurve::exact(SheenAlbedo::Long, true, r)), x, out);
     }));
     let mut table = Table::new(effort.cells, Axes::Bent, effort.steps);

@@ -10,14 +10,14 @@ pub struct Axis {
 
 impl Axis {
     /// An axis that shows all numbers with some room. Zeros lie at the lower end.
-    pub fn around(values: impl Iterator<Item = f64> + Clone) -> Self {
-        let positive = values.clone().filter(|v| *v > 0.0 && v.is_finite());
+    pub fn around(values: &[f64]) -> Self {
+        let positive = values.iter().copied().filter(|v| *v > 0.0 && v.is_finite());
         let least = positive.clone().fold(f64::INFINITY, f64::min);
         let most = positive.fold(0.0, f64::max);
         if !least.is_finite() {
             return Axis { low: 0.0, high: 1.0, log: false };
         }
-        let zeros = values.clone().any(|v| v <= 0.0);
+        let zeros = values.iter().any(|v| *v <= 0.0);
         if most / least > 6.0 || zeros {
             let room = (most / least).powf(0.08).max(1.5);
             let low = if zeros { least / room / 4.0 } else { least / room };
@@ -25,6 +25,12 @@ impl Axis {
         }
         let room = 0.12 * (most - least).max(0.2 * most);
         Axis { low: (least - room).max(0.0), high: most + room, log: false }
+    }
+
+    /// A straight axis from 0 to a little more than the largest number.
+    pub fn from_zero(values: &[f64]) -> Self {
+        let most = values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
+        Axis { low: 0.0, high: if most > 0.0 { 1.05 * most } else { 1.0 }, log: false }
     }
 
     /// Where a number lies, 0..1.
@@ -87,7 +93,7 @@ mod tests {
     #[test]
     fn ticks_lie_on_their_axis() {
         for values in [vec![1e-7, 0.3], vec![20.0, 31.0], vec![0.0, 4.0], vec![3.0, 3.0], vec![], vec![1.2, 60.0]] {
-            let axis = Axis::around(values.iter().copied());
+            let axis = Axis::around(&values);
             let named = axis.ticks().iter().filter(|(_, text)| !text.is_empty()).count();
             assert!((2..=16).contains(&named), "{values:?}: {named}");
             assert!(axis.ticks().iter().all(|(v, _)| *v >= axis.low && *v <= axis.high), "{values:?}");

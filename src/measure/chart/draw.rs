@@ -108,7 +108,7 @@ impl<B: DrawingBackend> Sheet<B> {
         for (index, group) in figure.groups().into_iter().enumerate() {
             self.curve(&plot, figure, group, COLORS[index % COLORS.len()])?;
         }
-        for point in &figure.points {
+        for point in figure.points.iter().filter(|_| figure.join != Join::Curves) {
             self.marker(plot.at(point), plot.index(figure, point), point.front || figure.join == Join::Lines)?;
         }
         self.legend(figure, &plot)?;
@@ -287,8 +287,9 @@ impl Plot {
     fn new(figure: &Figure) -> Self {
         let right = if figure.groups().len() > MANY { KEY } else { MARGINS[2] };
         let area = [MARGINS[0], MARGINS[1], SIZE[0] - right, SIZE[1] - MARGINS[3]];
-        let x = Axis::around(figure.points.iter().map(|p| p.cost));
-        let y = Axis::around(figure.points.iter().map(|p| p.error));
+        let axis = if figure.join == Join::Curves { Axis::from_zero } else { Axis::around };
+        let numbers = |of: fn(&Point) -> f64| figure.points.iter().map(of).collect::<Vec<f64>>();
+        let (x, y) = (axis(&numbers(|p| p.cost)), axis(&numbers(|p| p.error)));
         Plot { area, x, y }
     }
 
@@ -302,7 +303,7 @@ impl Plot {
     }
 
     fn path(&self, figure: &Figure, group: &str) -> Vec<[f64; 2]> {
-        if figure.join == Join::Lines {
+        if figure.join != Join::Front {
             return figure.points.iter().filter(|p| p.group == group).map(|p| self.at(p)).collect();
         }
         let mut path: Vec<[f64; 2]> = Vec::new();

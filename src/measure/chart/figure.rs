@@ -34,6 +34,8 @@ pub enum Join {
     Front,
     /// Every group is a line in the order of its points.
     Lines,
+    /// Every group is a function, drawn as a line without marks over straight axes from 0.
+    Curves,
 }
 
 /// One figure: its points and what they mean.

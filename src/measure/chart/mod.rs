@@ -10,6 +10,7 @@
 mod albedo;
 mod axis;
 mod closures;
+mod density;
 pub mod draw;
 mod effort;
 pub mod figure;
@@ -28,6 +29,7 @@ pub mod truth;
 mod visibility;
 mod widths;
 
+pub use density::density;
 pub use effort::Effort;
 pub use figures::figures;
 pub use scene::{Budget, scene_figure};

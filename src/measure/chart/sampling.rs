@@ -61,8 +61,8 @@ pub(super) fn figure(effort: &Effort) -> Result<Figure, String> {
         error: "relative variance of f cos / pdf".to_owned(),
         meaning: format!(
             "{MEDIANS} Error: the variance of one sample's weight over the square of its mean, by quadrature of (f cos)² / pdf, mean \
-                  over the viewer's cosines 0.1, 0.35, 0.6 and 0.85; softened exact term. \"ltc\" is the transformed cosine \
-                  with 10 % uniform (default), \"uniform\" the paper's hemisphere, \"normals\" the half vector."
+                  over the viewer's cosines 0.1, 0.35, 0.6 and 0.85; softened exact term. \"ltc\" is the transformed mixture \
+                  of cosines (default), \"uniform\" the paper's hemisphere, \"normals\" the half vector."
         ),
         join: Join::Front,
         points,

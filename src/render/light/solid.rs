@@ -92,7 +92,7 @@ impl Seen {
         let k1 = cos + cos_a;
         let k2 = sin - sin_a * u.dot(v);
         let q = (k2 + (k2 * cos - k1 * sin) * cos_a) / ((k2 * sin + k1 * cos) * sin_a);
-        let q = if q.is_finite() { q.max(-1.0).min(1.0) } else { 1.0 };
+        let q = if q.is_finite() { q.clamp(-1.0, 1.0) } else { 1.0 };
         let upright = |s: DVec3, of: DVec3| (s - of * s.dot(of)).normalize_or_zero();
         let cut = q * u + sine(q) * upright(w, u);
         let height = 1.0 - f64::from(y) * (1.0 - cut.dot(v));
@@ -102,7 +102,7 @@ impl Seen {
         let below = s.dot(b);
         let inverse = if below != 0.0 { 1.0 / below } else { 0.0 };
         // What is no number becomes 0.
-        let p = (-a.dot(s) * inverse).max(0.0).min(1.0);
+        let p = (-a.dot(s) * inverse).clamp(0.0, 1.0).max(0.0);
         let r = (direction.dot(b.cross(a)) * inverse).max(0.0).min(1.0 - p);
         (p as f32, r as f32)
     }
