@@ -111,7 +111,7 @@ fn error(scene: &str, reference: &Image, change: impl FnOnce(&mut Settings)) -> 
     squares.sum::<f64>() / image.pixels.len() as f64
 }
 
-/// Hundreds of lamps over a floor, and a window close to it: the squared error falls to less than a third.
+/// Hundreds of lamps over a floor, and the foot of a window: the squared error falls to less than a fifth and a half.
 #[test]
 fn the_tree_and_solid_angles_leave_less_noise() {
     // The camera sees no light: the edge of one would bring more noise than all that it lights.
@@ -120,16 +120,16 @@ fn the_tree_and_solid_angles_leave_less_noise() {
       <Quad corner="-4,0,-4" edge_x="0,0,8" edge_y="8,0,0"/>
       <ShaderGroup is_light="yes">float power 1; shader emitter l1;</ShaderGroup>
       <Flakes low="-2,0.3,-2" high="2,0.8,2" count="400" size="0.05"/></World>"#;
-    let window = r#"<World><Camera eye="0,1.2,0.3" look_at="0,0,-0.4" fov="40"/>
+    let window = r#"<World><Camera eye="0,0.8,-1.299" look_at="0,0,-1.3" fov="25"/>
       <ShaderGroup>color Cs 0.6 0.6 0.6; shader matte l1;</ShaderGroup><Quad corner="-4,0,-4" edge_x="0,0,8" edge_y="8,0,0"/>
       <ShaderGroup>color c 1 1 1; shader glow l1;</ShaderGroup>
       <Quad corner="-2,0.02,-1.5" edge_x="4,0,0" edge_y="0,2,0"/></World>"#;
-    for (name, scene) in [("lamps", lamps), ("window", window)] {
+    for (name, scene, factor) in [("lamps", lamps, 5.0), ("window", window, 2.0)] {
         let reference = picture(scene, |s| (s.width, s.height, s.samples, s.max_bounces) = (32, 32, 4096, 1));
         let before = error(scene, &reference, |s| {
             (s.light_choice, s.light_points) = (LightChoice::Power, LightPoints::Area);
         });
         let now = error(scene, &reference, |_| ());
-        assert!(3.0 * now < before, "{name}: {now} against {before}");
+        assert!(factor * now < before, "{name}: {now} against {before}");
     }
 }
