@@ -173,7 +173,7 @@ fn tables_and_drawings_parse() {
 #[test]
 fn scenes_are_measured_at_equal_time() {
     let figure = scene_figure(&scene(), &Budget::tiny(), &|_, _| ()).unwrap();
-    assert_eq!(figure.points.len(), 26);
+    assert_eq!(figure.points.len(), 30);
     assert!(figure.points.iter().all(|p| p.cost > 0.0 && p.error > 0.0 && p.error.is_finite()));
     assert!(figure.meaning.contains("At equal time the defaults have"), "{}", figure.meaning);
     roxmltree::Document::parse(&draw::svg(&figure).unwrap()).unwrap();

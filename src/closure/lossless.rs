@@ -11,7 +11,7 @@
 //! each pair of top and base; instead of a scale that could gain.
 
 use super::batch::MOST_SCALE;
-use super::layering::{Layer, Layers, Top, Toward, top_albedo};
+use super::layering::{Layer, Layers, Top, Toward, model_albedo, top_albedo};
 use super::lobe_kind::LobeKind;
 use super::lobe_models::{LobeModel, LobeModels, Values};
 use super::store::NONE;
@@ -55,7 +55,8 @@ impl Layers {
         if self.list.iter().zip(&simple).any(|(layer, simple)| layer.lossless() && !simple) {
             for (x, weight) in GAUSS_8 {
                 for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-                    self.add_passed(models, &simple, t * t * t, 3.0 * weight * t.powi(5));
+                    let square = t * t;
+                    self.add_passed(models, &simple, square * t, 3.0 * weight * (square * square * t));
                 }
             }
         }
@@ -186,8 +187,10 @@ fn mean_albedo(models: &LobeModels, model: &LobeModel, out: &mut [f32]) {
         let mut here = vec![0.0; out.len()];
         for (x, weight) in GAUSS_8 {
             for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-                super::layering::model_albedo(models, model, Toward::Fixed(t * t * t), &mut here);
-                sum.iter_mut().zip(&here).for_each(|(sum, a)| *sum += 3.0 * weight * t.powi(5) * a);
+                let square = t * t;
+                model_albedo(models, model, Toward::Fixed(square * t), &mut here);
+                let weight = 3.0 * weight * (square * square * t);
+                sum.iter_mut().zip(&here).for_each(|(sum, a)| *sum += weight * a);
             }
         }
         out.copy_from_slice(&sum);

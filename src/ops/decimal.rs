@@ -144,7 +144,7 @@ mod tests {
         // Ties and the ends of decades, where rounding is decided.
         let ties = (0..4000).map(|k| f64::from(k as f32 * 0.125));
         let ends =
-            (-30..30).flat_map(|e| [0.9999999f32, 1.0, 9.9999995, 9.5, 4.5].map(|m| f64::from(m * 10f32.powi(e))));
+            (-30..30).flat_map(|e| [0.999_999_9f32, 1.0, 9.999_999, 9.5, 4.5].map(|m| f64::from(m * 10f32.powi(e))));
         random.chain(ties).chain(ends).filter(|a| a.is_finite()).map(f64::abs)
     }
 

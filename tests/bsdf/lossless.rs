@@ -91,7 +91,7 @@ fn layers_in_layers_lose_nothing_over_a_diffuse_base_and_never_gain() {
                 // A sheen under a sheen is no diffuse lobe and loses a little; the base below both loses nothing.
                 let nested = format!("sheen(sheen(diffuse(N), N, color(1), {inner:?}), N, color(1), {outer:?})");
                 let total = white(&nested, cos, Layering::Lossless).x;
-                assert!(total <= 1.0 + 1.5e-3 && total >= 0.93, "{inner} in {outer} at {cos}: {total}");
+                assert!((0.93..=1.0 + 1.5e-3).contains(&total), "{inner} in {outer} at {cos}: {total}");
                 let without = format!("sheen(sheen(0 * diffuse(N), N, color(1), {inner:?}), N, color(1), {outer:?})");
                 let tops = white(&without, cos, Layering::Lossless).x;
                 let pass = |r: f64| {

@@ -63,7 +63,8 @@ fn spread<M: Scatter>(r: f32, c: f64, (cosines, azimuths): &(Vec<Node>, Vec<Node
 #[test]
 fn the_sheen_sampler_is_bounded_at_every_view_and_roughness() {
     let nodes = dense();
-    let models: [(&str, fn(f32, f64, &(Vec<Node>, Vec<Node>)) -> [f64; 3]); 5] = [
+    type Measure = fn(f32, f64, &(Vec<Node>, Vec<Node>)) -> [f64; 3];
+    let models: [(&str, Measure); 5] = [
         ("softened", spread::<Sheen<EXACT, true>>),
         ("raw", spread::<Sheen<EXACT, false>>),
         ("published, softened", spread::<Sheen<PUBLISHED, true>>),

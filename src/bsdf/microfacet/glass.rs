@@ -18,6 +18,7 @@ use super::white::WhiteTable;
 use super::{Beckmann, Blinn};
 use crate::bsdf::fresnel::{dielectric, refracted};
 use crate::bsdf::power::log2;
+use crate::math::elementary::exp;
 use glam::Vec3;
 use std::f32::consts::LN_2;
 use std::sync::OnceLock;
@@ -45,7 +46,7 @@ fn index_axis(eta: f32) -> f32 {
 fn index_at(place: f32) -> f32 {
     let x = 2.0 * place - 1.0;
     // At 1 a boundary is none; an index close to it stands for the limit.
-    if x == 0.0 { 1.0 + 1e-4 } else { (x.signum() * MOST * x * x).exp() }
+    if x == 0.0 { 1.0 + 1e-4 } else { exp(x.signum() * MOST * x * x) }
 }
 
 /// Place of a width on the axis of the tables, 0..1.

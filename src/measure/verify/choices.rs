@@ -54,10 +54,8 @@ fn ranged(shader: &Shader) -> Vec<(String, [f32; 2])> {
         let variable = &typed.variables[param.var.0 as usize];
         let of = |name: &str| param.metadata.iter().find(|entry| entry.name == name).and_then(value);
         let range = RANGES.iter().find_map(|(low, high)| Some([of(low)?, of(high)?]));
-        if let (Some([low, high]), true) = (range, variable.ty == Type::FLOAT) {
-            if low < high {
-                out.push((variable.name.clone(), [low, high]));
-            }
+        if let Some([low, high]) = range.filter(|[low, high]| variable.ty == Type::FLOAT && low < high) {
+            out.push((variable.name.clone(), [low, high]));
         }
     }
     out

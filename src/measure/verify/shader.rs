@@ -21,6 +21,9 @@ const GRID: [f32; 3] = [0.1, 0.5, 0.9];
 const MOST_GROUPS: usize = 96;
 const MOST_SUSPECTS: usize = 6;
 
+/// Parameters with their values, as texts.
+type Choice = Vec<(String, String)>;
+
 /// A group at a place, with the parameters that make it, and views to try beside the usual ones.
 #[derive(Clone, Debug)]
 struct Variant {
@@ -106,17 +109,16 @@ fn suspects(
         }
     }
     choices.truncate(MOST_GROUPS);
-    let look = |(choice, places): &(Vec<(String, String)>, usize)| {
+    let look = |(choice, places): &(Choice, usize)| {
         // A value that does not fit a parameter is none of the shader's faults.
         let group = build(shader, choice).ok()?;
         let found = survey(&group, settings, *places);
         Some(found.into_iter().map(|suspect| (suspect, choice.clone(), group.clone())).collect::<Vec<_>>())
     };
-    let mut found: Vec<(Suspect, Vec<(String, String)>, Group)> =
-        choices.par_iter().filter_map(look).flatten().collect();
+    let mut found: Vec<(Suspect, Choice, Group)> = choices.par_iter().filter_map(look).flatten().collect();
     found.sort_by(|a, b| b.0.excess.total_cmp(&a.0.excess));
     found.truncate(MOST_SUSPECTS);
-    let variant = |(suspect, choice, group): (Suspect, Vec<(String, String)>, Group)| Variant {
+    let variant = |(suspect, choice, group): (Suspect, Choice, Group)| Variant {
         label: label(&choice, suspect.spot, suspect.spot != Spot::MIDDLE),
         group,
         spot: suspect.spot,

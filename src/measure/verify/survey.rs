@@ -48,7 +48,7 @@ fn place(index: usize) -> (Spot, View) {
     let spot = Spot {
         uv: [u as f32, v as f32],
         back: index % 5 == 4,
-        ray_type: if index % 3 == 0 { RAY_TYPES[index / 3 % RAY_TYPES.len()] } else { 1 },
+        ray_type: if index.is_multiple_of(3) { RAY_TYPES[index / 3 % RAY_TYPES.len()] } else { 1 },
         width: WIDTHS[index / 2 % WIDTHS.len()],
     };
     (spot, View { cos: cos.max(1e-4), azimuth: azimuth * std::f64::consts::TAU })

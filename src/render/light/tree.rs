@@ -269,7 +269,7 @@ mod tests {
             let corners = [center, center + b, center + c];
             let low = corners.into_iter().fold(Vec3::INFINITY, Vec3::min);
             let high = corners.into_iter().fold(Vec3::NEG_INFINITY, Vec3::max);
-            let cos_cone = if i % 7 == 0 { 0.0 } else { 1.0 };
+            let cos_cone = if i.is_multiple_of(7) { 0.0 } else { 1.0 };
             Bounds { low, high, axis: b.cross(c).normalize_or(Vec3::Y), cos_cone, power: 0.05 + number(i, 10) }
         };
         (0..count).map(light).collect()
