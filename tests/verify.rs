@@ -288,7 +288,9 @@ fn the_command_has_a_verdict_and_a_status() {
 
     let (status, table, _) = command(&["--quick", "patches.osl"]);
     assert_eq!(status, 1);
-    assert!(line(&table, "energy").contains("u 0.9, v 0.9"), "{table}");
+    // Where in the patch depends on the survey; that it is there does not.
+    let energy = line(&table, "energy");
+    assert!(energy.contains("; u 0.") && energy.contains("sends back 20.00 %"), "{table}");
 
     let (status, table, _) = command(&["--quick", "lamp.osl"]);
     assert_eq!(status, 0);

@@ -8,7 +8,7 @@
 //! angle that is 1, and elsewhere smoother than the albedo itself.
 //!
 //! Decision (2026-11-29): tables over width and cosine, one for each of some indices, made when a scene asks for their
-//! neighbourhood, because a scene has a few indices and one table takes some 70 ms; instead of one over all indices.
+//! neighbourhood, because a scene has a few indices and one table takes some 100 ms; instead of one over all indices.
 
 use super::albedo::{around, cosine_at, cosine_axis, cubic, width_at, width_axis};
 use super::distribution::{Distribution, Widths};
@@ -25,7 +25,7 @@ use std::sync::OnceLock;
 
 /// Widths, cosines and indices of the tables.
 const WIDTHS: usize = 14;
-const COSINES: usize = 24;
+const COSINES: usize = 36;
 const INDICES: usize = 65;
 /// The largest |ln eta|; beyond it the value there stands.
 const MOST: f32 = 2.0;
