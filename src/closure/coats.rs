@@ -18,10 +18,10 @@
 use super::batch::LobeColumns;
 use super::frames::FrameColumns;
 use super::source::Triples;
-use crate::bsdf::fresnel::{Dielectric, Fresnel, dielectric};
+use crate::bsdf::fresnel::{Dielectric, dielectric};
 use crate::bsdf::microfacet::albedo::FacetTable;
 use crate::bsdf::microfacet::{Geometry, Ggx, MIN_ALPHA};
-use crate::bsdf::{params, select};
+use crate::bsdf::select;
 use crate::lanes;
 use crate::math::columns::Column3;
 use crate::math::elementary::exp;
@@ -295,7 +295,7 @@ fn pass_facets(from: Crossing, outside: Triples, alpha: Option<&[f32]>, pass: &m
     for (lane, pass) in pass.iter_mut().enumerate() {
         let cos = from.normal.at(lane).dot(outside.at(lane));
         if alpha[lane] >= MIN_ALPHA && cos > 0.0 && *pass > 0.0 {
-            let fresnel = Dielectric::prepare(params([from.eta[lane]]), 0);
+            let fresnel = Dielectric::of(from.eta[lane]);
             let reflected = FacetTable::of::<Ggx>(Geometry::Smith).color(&fresnel, alpha[lane].min(1.0), cos.min(1.0));
             *pass = 1.0 - reflected.x;
         }

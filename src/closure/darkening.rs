@@ -19,12 +19,11 @@ use super::flat::{Flat, Lobe};
 use super::layering::{Layers, Top};
 use super::store::NONE;
 use super::weights::{Weight, Weights};
-use crate::bsdf::fresnel::{Dielectric, Fresnel, dielectric};
+use crate::bsdf::fresnel::{Dielectric, dielectric};
 use crate::bsdf::microfacet::albedo::FacetTable;
 use crate::bsdf::microfacet::{Geometry, Ggx};
-use crate::bsdf::params;
 use crate::math::elementary::exp;
-use crate::math::quadrature::GAUSS_8;
+use crate::math::quadrature::{GAUSS_8, cosine_means};
 use glam::Vec3;
 
 /// A layer that is a coat, and the weight that reaches it.
@@ -179,18 +178,14 @@ fn returned(coat: &Coat, lane: usize, known: &mut Option<(Boundary, f32)>) -> Re
 
 /// The part of diffuse light that passes a boundary from outside.
 fn mean_pass(Boundary { eta, alpha }: Boundary) -> f32 {
-    let fresnel = Dielectric::prepare(params([eta]), 0);
+    let fresnel = Dielectric::of(eta);
     let mut sum = 0.0;
-    for (x, weight) in GAUSS_8 {
-        for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-            let square = t * t;
-            let cos = square * t;
-            let reflected = match alpha {
-                None => dielectric(cos, eta),
-                Some(alpha) => FacetTable::of::<Ggx>(Geometry::Smith).color(&fresnel, alpha.min(1.0), cos).x,
-            };
-            sum += 3.0 * weight * (square * square * t) * (1.0 - reflected);
-        }
+    for (cos, weight) in cosine_means() {
+        let reflected = match alpha {
+            None => dielectric(cos, eta),
+            Some(alpha) => FacetTable::of::<Ggx>(Geometry::Smith).color(&fresnel, alpha.min(1.0), cos).x,
+        };
+        sum += weight * (1.0 - reflected);
     }
     sum
 }

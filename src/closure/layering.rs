@@ -18,7 +18,7 @@ use crate::bsdf::between;
 use crate::bsdf::sheen::albedo::{AlbedoCurve, FIT_METHOD, LONG_METHOD, SHORT_METHOD, TABLE_METHOD};
 use crate::lanes;
 use crate::math::columns::Column3;
-use crate::math::quadrature::GAUSS_8;
+use crate::math::quadrature::cosine_means;
 use glam::Vec3;
 use std::borrow::Cow;
 
@@ -225,11 +225,8 @@ impl Layers {
                 }
             }
         }
-        for (x, weight) in GAUSS_8 {
-            for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-                let square = t * t;
-                self.add_mean(models, square * t, 3.0 * weight * (square * square * t));
-            }
+        for (cos, weight) in cosine_means() {
+            self.add_mean(models, cos, weight);
         }
         for index in 0..self.list.len() {
             let coverage = models.column(self.list[index].coverage);

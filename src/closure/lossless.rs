@@ -15,7 +15,7 @@ use super::layering::{Layer, Layers, Top, Toward, model_albedo, top_albedo};
 use super::lobe_kind::LobeKind;
 use super::lobe_models::{LobeModel, LobeModels, Values};
 use super::store::NONE;
-use crate::math::quadrature::GAUSS_8;
+use crate::math::quadrature::cosine_means;
 use glam::Vec3;
 
 /// Diffuse lobes that lean in some direction would gain up to half a per cent at some views by the scale of a Lambertian one.
@@ -53,11 +53,8 @@ impl Layers {
             self.pass_alone(models, index);
         }
         if self.list.iter().zip(&simple).any(|(layer, simple)| layer.lossless() && !simple) {
-            for (x, weight) in GAUSS_8 {
-                for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-                    let square = t * t;
-                    self.add_passed(models, &simple, square * t, 3.0 * weight * (square * square * t));
-                }
+            for (cos, weight) in cosine_means() {
+                self.add_passed(models, &simple, cos, weight);
             }
         }
     }
@@ -185,13 +182,9 @@ fn mean_albedo(models: &LobeModels, model: &LobeModel, out: &mut [f32]) {
     let Some(loops) = model.kind.loops() else {
         let mut sum = vec![0.0; out.len()];
         let mut here = vec![0.0; out.len()];
-        for (x, weight) in GAUSS_8 {
-            for t in [0.5 - 0.5 * x, 0.5 + 0.5 * x] {
-                let square = t * t;
-                model_albedo(models, model, Toward::Fixed(square * t), &mut here);
-                let weight = 3.0 * weight * (square * square * t);
-                sum.iter_mut().zip(&here).for_each(|(sum, a)| *sum += weight * a);
-            }
+        for (cos, weight) in cosine_means() {
+            model_albedo(models, model, Toward::Fixed(cos), &mut here);
+            sum.iter_mut().zip(&here).for_each(|(sum, a)| *sum += weight * a);
         }
         out.copy_from_slice(&sum);
         return;

@@ -59,6 +59,14 @@ impl Report {
         Report { kind: ReportKind::Warning, place: Arc::default(), lane: 0, text }
     }
 
+    /// True when it says that something is wrong, not what a shader printed or warns of.
+    pub fn is_wrong(&self) -> bool {
+        match self.kind {
+            ReportKind::Error | ReportKind::Mistake | ReportKind::Fatal => true,
+            ReportKind::Output | ReportKind::File(_) | ReportKind::Warning => false,
+        }
+    }
+
     /// True when the shader cannot be run.
     pub fn is_fatal(&self) -> bool {
         self.kind == ReportKind::Fatal

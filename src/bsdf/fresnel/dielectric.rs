@@ -29,6 +29,7 @@ pub struct Dielectric {
 
 impl Dielectric {
     /// The dielectric of an index, transmitted over incident.
+    #[inline(always)]
     pub fn of(eta: f32) -> Self {
         Dielectric { eta: eta.min(1e3) }
     }
@@ -40,7 +41,7 @@ impl Fresnel for Dielectric {
 
     #[inline(always)]
     fn prepare(p: Params, from: usize) -> Self {
-        Dielectric { eta: p[from].min(1e3) }
+        Dielectric::of(p[from])
     }
 
     #[inline(always)]

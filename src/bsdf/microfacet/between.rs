@@ -4,7 +4,7 @@
 //! sampling, and a boundary whose facets lose next to nothing does without it; instead of scaling the whole lobe by its white
 //! albedo (Turquin 2019), which is not reciprocal and tints what was reflected once.
 
-use super::distribution::MIN_ALPHA;
+use super::distribution::{MIN_ALPHA, Widths};
 use super::geometry::{Facets, Geometry};
 use super::white::WhiteTable;
 use crate::bsdf::fresnel::{Fresnel, limited};
@@ -46,9 +46,7 @@ impl<F: Fresnel> Between<F> {
         if x == y {
             return table.lost(x, cos);
         }
-        let (u, v) = (x * w.x, y * w.y);
-        let toward = (u * u + v * v + x * y * (w.z * w.z)).sqrt();
-        let toward = table.lost(limited(toward, MIN_ALPHA, 1.0), cos);
+        let toward = table.lost(Widths { x, y }.toward(w), cos);
         STRETCHED * toward.min(table.lost((x * y).sqrt(), cos))
     }
 
@@ -88,11 +86,7 @@ impl<F: Fresnel> Scatter for Between<F> {
 
     #[inline(always)]
     fn choose(self, Choice(number): Choice) -> Self {
-        let geometry = match number % 3 {
-            0 => Geometry::Smith,
-            1 => Geometry::Separable,
-            _ => Geometry::VGroove,
-        };
+        let geometry = Geometry::numbered(number);
         let facets = match number / 3 {
             0 => Facets::Ggx,
             1 => Facets::Beckmann,

@@ -1,6 +1,7 @@
 //! What a distribution of microfacets must answer, and the widths that all of them share.
 
 use super::geometry::Facets;
+use crate::bsdf::{limited, select};
 use glam::Vec3;
 
 /// Below this width in both directions a boundary counts as smooth.
@@ -13,6 +14,17 @@ pub struct Widths {
     pub x: f32,
     /// Width along y.
     pub y: f32,
+}
+
+impl Widths {
+    /// The width that the facets have in the azimuth of a direction.
+    #[inline(always)]
+    pub fn toward(self, w: Vec3) -> f32 {
+        let (x, y) = (self.x * w.x, self.y * w.y);
+        // Toward the normal no azimuth counts more than another.
+        let width = (x * x + y * y + self.x * self.y * (w.z * w.z)).sqrt();
+        limited(select(self.x == self.y, self.x, width), MIN_ALPHA, 1.0)
+    }
 }
 
 /// A distribution of microfacets over a flat surface, with the Smith shadowing that belongs to it.

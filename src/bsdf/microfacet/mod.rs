@@ -97,11 +97,7 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
     /// The width that the facets have in the azimuth of a direction.
     #[inline(always)]
     fn width_toward(&self, w: Vec3) -> f32 {
-        let widths = self.visible.0;
-        let (x, y) = (widths.x * w.x, widths.y * w.y);
-        // Toward the normal no azimuth counts more than another.
-        let width = (x * x + y * y + widths.x * widths.y * (w.z * w.z)).sqrt();
-        limited(select(widths.x == widths.y, widths.x, width), MIN_ALPHA, 1.0)
+        self.visible.0.toward(w)
     }
 
     /// What single scattering of both halves leaves of white light toward a direction: what each is divided by.

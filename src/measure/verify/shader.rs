@@ -63,10 +63,7 @@ impl ShaderSubject {
         let others = set.iter().map(|s| (s, 1)).chain(ranges.iter().map(|s| (s, 0)));
         for (setting, from) in others {
             for value in &setting.values[from..] {
-                let mut choice = usual.clone();
-                choice.retain(|(name, _)| *name != setting.name);
-                choice.push((setting.name.clone(), value.clone()));
-                choices.push(choice);
+                choices.push(with(&usual, &setting.name, value));
             }
         }
         let mut variants = Vec::new();
@@ -86,6 +83,12 @@ impl ShaderSubject {
     }
 }
 
+/// The same parameters with another value of one.
+fn with(usual: &[(String, String)], name: &str, value: &str) -> Choice {
+    let others = usual.iter().filter(|(other, _)| other != name).cloned();
+    others.chain([(name.to_owned(), value.to_owned())]).collect()
+}
+
 /// The group of a shader with these parameters.
 fn build(shader: &Shader, choice: &[(String, String)]) -> Result<Group, GroupError> {
     choice.iter().fold(shader.group(), |builder, (name, text)| builder.text(name, text)).build()
@@ -102,10 +105,7 @@ fn suspects(
     let mut choices = vec![(usual.to_vec(), effort.places)];
     for setting in surveyed {
         for value in &setting.values {
-            let mut choice = usual.to_vec();
-            choice.retain(|(name, _)| *name != setting.name);
-            choice.push((setting.name.clone(), value.clone()));
-            choices.push((choice, effort.places / 8));
+            choices.push((with(usual, &setting.name, value), effort.places / 8));
         }
     }
     choices.truncate(MOST_GROUPS);

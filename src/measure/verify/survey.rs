@@ -8,7 +8,7 @@
 use super::direction::View;
 use super::tree::Spot;
 use crate::closure::{Lobes, Samples, Settings};
-use crate::exec::{Group, MAX_LANES, Machine, Points, ReportKind};
+use crate::exec::{Group, MAX_LANES, Machine, Points, Report};
 use crate::math::columns::Column3;
 use glam::Vec3;
 
@@ -79,10 +79,7 @@ pub fn survey(group: &Group, settings: Settings, places: usize) -> Vec<Suspect> 
         let tree = machine.shade(group, &points);
         lobes.flatten_sides(group.library(), tree, &wo, &points.ng, &points.backfacing);
         let wrong = lobes.dropped().iter().map(|dropped| dropped.lane as usize).next();
-        let reported = machine.take_reports().into_iter().find(|report| match report.kind {
-            ReportKind::Error | ReportKind::Mistake | ReportKind::Fatal => true,
-            ReportKind::Output | ReportKind::File(_) | ReportKind::Warning => false,
-        });
+        let reported = machine.take_reports().into_iter().find(Report::is_wrong);
         if let (Some(lane), None) = (wrong.or(reported.map(|report| report.lane)), broken) {
             broken = here.get(lane).map(|&(spot, view)| Suspect { spot, view, excess: f64::INFINITY });
         }

@@ -2,7 +2,7 @@
 
 use super::subject::Scatterer;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
-use crate::exec::{Group, Machine, Points, ReportKind};
+use crate::exec::{Group, Machine, Points};
 use crate::math::columns::Column3;
 use glam::Vec3;
 
@@ -90,11 +90,7 @@ impl Scatterer for TreeScatterer {
             self.complaint = Some(format!("{place}`{}` has a parameter or weight that is no number", dropped.closure));
         }
         for report in self.machine.take_reports() {
-            let wrong = match report.kind {
-                ReportKind::Error | ReportKind::Mistake | ReportKind::Fatal => true,
-                ReportKind::Output | ReportKind::File(_) | ReportKind::Warning => false,
-            };
-            if wrong && self.complaint.is_none() {
+            if report.is_wrong() && self.complaint.is_none() {
                 self.complaint = Some(report.to_string());
             }
         }
