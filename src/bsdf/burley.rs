@@ -66,6 +66,16 @@ impl Scatter for Burley {
         cosine_hemisphere(xi.x, xi.y)
     }
 
+    /// Source: own; `more` is linear in the cosine of the azimuth, of which the mean is 0 and that of the square 1/2.
+    #[inline(always)]
+    fn turned(&self, cos_i: f32, cos_o: f32) -> f32 {
+        let (rise_i, rise_o) = (fifth(cos_i), fifth(cos_o));
+        let more = self.roughness * (1.0 + cos_i * cos_o) - 0.5;
+        let sines2 = (1.0 - cos_i * cos_i) * (1.0 - cos_o * cos_o);
+        let square = more * more + 0.5 * self.roughness * self.roughness * sines2;
+        1.0 + more * (rise_i + rise_o) + square * rise_i * rise_o
+    }
+
     #[inline(always)]
     fn albedo(&self, cos: f32) -> f32 {
         self.whole_albedo(cos).min(1.0)

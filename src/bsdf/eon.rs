@@ -84,6 +84,14 @@ impl Scatter for Eon {
         cosine_hemisphere(xi.x, xi.y)
     }
 
+    /// Source: own; the mean of the cosine of the azimuth is 1 / pi over the half that is aligned, and -1 / pi over the other.
+    #[inline(always)]
+    fn turned(&self, cos_i: f32, cos_o: f32) -> f32 {
+        let sines = ((1.0 - cos_i * cos_i) * (1.0 - cos_o * cos_o)).max(0.0).sqrt();
+        let once = self.a + self.b * FRAC_1_PI * sines * (1.0 / cos_i.max(cos_o).max(1e-6) - 1.0);
+        once + (1.0 - self.single(cos_i)) * (1.0 - self.single(cos_o)) / (1.0 - self.mean).max(1e-6)
+    }
+
     #[inline(always)]
     fn albedo(&self, cos: f32) -> f32 {
         let single = self.single(cos);

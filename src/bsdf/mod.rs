@@ -171,6 +171,22 @@ pub trait Scatter: Copy + 'static {
             out[i] = self.top_albedo(Vec3::new(x[i], y[i], z[i]));
         }
     }
+    /// pi f of two cosines 0..1 on the mean over the azimuth between them; read for models of [`Spread::Even`].
+    ///
+    /// Source: the mean of eight azimuths, where a model has no closed form.
+    #[inline(always)]
+    fn turned(&self, cos_i: f32, cos_o: f32) -> f32 {
+        let sine = |cos: f32| ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
+        let wo = Vec3::new(sine(cos_o), 0.0, cos_o);
+        let (view, mut sum) = (self.view(wo), 0.0);
+        for (x, y) in [(0.980_785_3, 0.195_090_32), (0.831_469_6, 0.555_570_2)] {
+            for (x, y) in [(x, y), (y, x), (-x, y), (-y, x)] {
+                let wi = Vec3::new(x * sine(cos_i), y * sine(cos_i), cos_i);
+                sum += self.eval_from(wo, view, wi).f_cos;
+            }
+        }
+        sum * (std::f32::consts::PI / 8.0) / cos_i.max(1e-6)
+    }
     /// Mean of [`Scatter::top_albedo`] over the hemisphere, weighted by the cosine, at an azimuth between x and y.
     ///
     /// Source: Gauss-Legendre of 8 nodes in the cube root of the cosine, exact for albedos of degree 10 in it.

@@ -72,6 +72,14 @@ impl Scatter for OrenNayar {
         cosine_hemisphere(xi.x, xi.y)
     }
 
+    /// Source: own; the mean of what is positive of the cosine of the azimuth is 1 / pi.
+    #[inline(always)]
+    fn turned(&self, cos_i: f32, cos_o: f32) -> f32 {
+        let sines = ((1.0 - cos_i * cos_i) * (1.0 - cos_o * cos_o)).max(0.0).sqrt();
+        let limit = self.published_albedo(cos_i).max(self.published_albedo(cos_o)).max(1.0);
+        (self.a + self.b * FRAC_1_PI * sines / cos_i.max(cos_o).max(1e-6)) / limit
+    }
+
     #[inline(always)]
     fn albedo(&self, cos: f32) -> f32 {
         self.published_albedo(cos).min(1.0)

@@ -152,6 +152,17 @@ lanes! {
     }
 }
 
+lanes! {
+    /// f between a cosine and those of the lanes, over that of a white Lambertian surface, on the mean over the azimuth.
+    pub fn turned_lanes<M: Scatter, S: Source<M>>(source: S, node: f32, cos: &[f32], out: &mut [f32]) {
+        let n = out.len();
+        let (cos, source) = (&cos[..n], source.narrow(n));
+        for i in 0..n {
+            out[i] = source.at(i).turned(node, cos[i].abs().min(1.0));
+        }
+    }
+}
+
 /// The mean albedo of one model.
 pub fn average_lanes<M: Scatter, S: Source<M>>(source: S, out: &mut [f32]) {
     let source = source.narrow(out.len());

@@ -32,6 +32,11 @@ pub fn evaluate(flat: &mut Flat, wi: &Column3, out: &mut Evaluation) {
     for (index, &lobe) in flat.lobes.iter().enumerate() {
         let model = &flat.models.list[lobe.model as usize];
         let (Some(loops), Some(frame)) = (model.kind.loops(), flat.models.frame_of(model)) else { continue };
+        let by_lobe = flat.layers.scales_by_lobe(lobe.layer);
+        if by_lobe {
+            let weight = &flat.weights[3 * n * index..];
+            flat.layers.scale_lobe(&flat.models, index, lobe, weight, &mut flat.scaled);
+        }
         let mut columns = LobeColumns {
             wo: Triples::of(&frame.wo),
             views: flat.models.views(model),
@@ -41,9 +46,7 @@ pub fn evaluate(flat: &mut Flat, wi: &Column3, out: &mut Evaluation) {
             scale: flat.layers.scale_of(lobe.layer, &flat.ones),
             pick: &flat.picks[n * index..n * (index + 1)],
         };
-        if flat.layers.scales_by_lobe(lobe.layer) {
-            let weight = &flat.weights[3 * n * index..];
-            flat.layers.scale_lobe(&flat.models, lobe.layer, model.kind, weight, &mut flat.scaled);
+        if by_lobe {
             (columns.weight, columns.scale) = (Triples::packed(&flat.scaled, n), &flat.ones);
         }
         if let Some(coat) = flat.coats.get(flat.layers.coat(lobe.layer)) {

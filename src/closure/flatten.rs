@@ -98,7 +98,7 @@ pub fn flatten(flat: &mut Flat, sweep: &mut Sweep, library: &Library, tree: &Tre
         sweep.tops.build_steps(&mut flat.layers, &mut flat.models, tree, root);
     }
     flat.layers.prepare(&flat.models, &flat.coats, &flat.ones);
-    flat.layers.prepare_lossless(&flat.models);
+    flat.layers.prepare_lossless(&flat.models, &flat.lobes);
     emit(flat, sweep);
     darken(flat, &sweep.weights, &sweep.coated);
     pick(flat);

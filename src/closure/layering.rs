@@ -8,6 +8,7 @@
 use super::batch::{LayerColumns, layer_lanes, sheen_albedo_lanes};
 use super::coats::Coats;
 use super::curves::{Curves, curve_albedo_lanes, push_curves};
+use super::leaning::Leanings;
 use super::lobe_kind::Way;
 use super::lobe_models::{Column, LobeModel, LobeModels};
 use super::settings::{Layering, SheenAlbedo};
@@ -108,6 +109,8 @@ pub struct Layers {
     pub(super) top_i: Vec<f32>,
     /// The mean of what a lossless layer and those around it let through, three columns a layer.
     pub(super) passed: Vec<f32>,
+    /// What corrects the scale of diffuse lobes that lean.
+    pub(super) leanings: Leanings,
     alpha_o: Vec<f32>,
     through: Vec<f32>,
     inverse_mean: Vec<f32>,

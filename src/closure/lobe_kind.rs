@@ -7,7 +7,7 @@
 //! a new model then touched the enum, the macro and three lists beside it, and none could come from outside the crate.
 
 use super::batch::{
-    LobeColumns, albedo_lanes, average_lanes, evaluate_lanes, sample_lanes, top_albedo_lanes, view_lanes,
+    LobeColumns, albedo_lanes, average_lanes, evaluate_lanes, sample_lanes, top_albedo_lanes, turned_lanes, view_lanes,
 };
 use super::event;
 use super::source::{Each, Numbers, Same, Source, Triples, Views};
@@ -74,6 +74,8 @@ pub(super) struct Loops {
     pub top_albedo: fn(Numbers, Choice, Triples, &mut [f32]),
     /// Its mean.
     pub average: fn(Numbers, Choice, &mut [f32]),
+    /// f between a cosine and those of the lanes, see [`Scatter::turned`].
+    pub turned: fn(Numbers, Choice, f32, &[f32], &mut [f32]),
 }
 
 /// What sampling a lobe reads beside its model.
@@ -125,9 +127,9 @@ impl LobeKind {
         self.0.even
     }
 
-    /// True for Lambertian lobes.
-    pub(super) fn is_flat(self) -> bool {
-        self.0.flat
+    /// True for lobes that scatter about evenly, but are not Lambertian.
+    pub(super) fn leans(self) -> bool {
+        self.0.even && !self.0.flat
     }
 
     /// What sampling it counts as, see [`event`].
@@ -177,6 +179,7 @@ impl<M: Scatter> OfModel<M> {
             albedo: albedo::<M>,
             top_albedo: top_albedo::<M>,
             average: average::<M>,
+            turned: turned::<M>,
         }),
     };
 }
@@ -251,4 +254,8 @@ fn top_albedo<M: Scatter>(numbers: Numbers, choice: Choice, w: Triples, out: &mu
 
 fn average<M: Scatter>(numbers: Numbers, choice: Choice, out: &mut [f32]) {
     with_source!(numbers, choice, |source| average_lanes::<M, _>(source, out));
+}
+
+fn turned<M: Scatter>(numbers: Numbers, choice: Choice, node: f32, cos: &[f32], out: &mut [f32]) {
+    with_source!(numbers, choice, |source| turned_lanes::<M, _>(source, node, cos, out));
 }

@@ -2,24 +2,21 @@
 //!
 //! What a layer lets through is T(w) = 1 - t a(w), t the tint in one color. A reciprocal scale k(i, o) of a lobe f loses nothing
 //! when the integral of k f cos is T(o) times the lobe's albedo. Over a Lambertian or translucent lobe that is k = T(i) T(o) over
-//! the mean of T (Kelemen and Szirmay-Kalos 2001), and so it is nearly over the other diffuse models, which are left a
-//! per cent less lest they gain; over a mirror it is the
-//! T of both directions, which are alike, and min(T(i), T(o)) is that there and safe over everything else. Layers around
-//! each other multiply, and of a diffuse lobe the mean is that of their product.
+//! the mean of T (Kelemen and Szirmay-Kalos 2001), and so it is nearly over the other diffuse models ([`super::leaning`] has the
+//! difference); over a mirror it is the T of both directions, which are alike, and min(T(i), T(o)) is that there and safe
+//! over everything else. Layers around each other multiply, and of a diffuse lobe the mean is that of their product.
 //!
 //! Decision (2026-11-29): rough lobes take the smaller T, which loses some light, because their own scale needs a table for
 //! each pair of top and base; instead of a scale that could gain.
 
 use super::batch::MOST_SCALE;
+use super::flat::Lobe;
 use super::layering::{Layer, Layers, Top, Toward, model_albedo, top_albedo};
-use super::lobe_kind::LobeKind;
+use super::leaning::Cover;
 use super::lobe_models::{LobeModel, LobeModels, Values};
 use super::store::NONE;
 use crate::math::quadrature::cosine_means;
 use glam::Vec3;
-
-/// Diffuse lobes that lean in some direction would gain up to half a per cent at some views by the scale of a Lambertian one.
-const LEANING: f32 = 0.99;
 
 impl Layers {
     /// The innermost lossless layer at or around one.
@@ -38,11 +35,15 @@ impl Layers {
         self.by_lobe && self.lossless_from(layer).is_some()
     }
 
-    /// Computes the means that lossless layers divide by.
-    pub fn prepare_lossless(&mut self, models: &LobeModels) {
+    /// Computes the means that lossless layers divide by, and what corrects the lobes under them that lean.
+    pub fn prepare_lossless(&mut self, models: &LobeModels, lobes: &[Lobe]) {
+        self.leanings.clear();
         if !self.by_lobe {
             return;
         }
+        let model_of = |lobe: &Lobe| models.list[lobe.model as usize];
+        let leaning = |lobe: &Lobe| model_of(lobe).kind.leans() && self.lossless_from(lobe.layer).is_some();
+        let leans = lobes.iter().any(leaning);
         let n = models.lanes;
         self.passed.clear();
         self.passed.resize(3 * n * self.list.len(), 0.0);
@@ -52,11 +53,27 @@ impl Layers {
         for index in (0..self.list.len()).filter(|&index| simple[index]) {
             self.pass_alone(models, index);
         }
-        if self.list.iter().zip(&simple).any(|(layer, simple)| layer.lossless() && !simple) {
+        if leans || self.list.iter().zip(&simple).any(|(layer, simple)| layer.lossless() && !simple) {
             for (cos, weight) in cosine_means() {
-                self.add_passed(models, &simple, cos, weight);
+                let products = self.add_passed(models, &simple, cos, weight);
+                if leans {
+                    self.leanings.add_node(&products);
+                }
             }
         }
+        let mut leanings = std::mem::take(&mut self.leanings);
+        for (index, lobe) in lobes.iter().enumerate().filter(|(_, lobe)| model_of(lobe).kind.leans()) {
+            if let Some(cover) = self.cover(lobe.layer, n) {
+                leanings.prepare(models, index, &model_of(lobe), cover);
+            }
+        }
+        self.leanings = leanings;
+    }
+
+    /// What covers a lobe under this layer without loss.
+    fn cover(&self, layer: u32, n: usize) -> Option<Cover<'_>> {
+        let layer = self.lossless_from(layer)? as usize;
+        Some(Cover { layer, layers: self.list.len(), mean: &self.passed[3 * layer * n..3 * (layer + 1) * n] })
     }
 
     /// The mean of what one lobe lets through by itself.
@@ -75,7 +92,9 @@ impl Layers {
     }
 
     /// Adds one cosine to the means of the products of lossless layers in each other, and of those whose top is a tree.
-    fn add_passed(&mut self, models: &LobeModels, simple: &[bool], cos: f32, weight: f32) {
+    ///
+    /// Gives what each lossless layer and those around it let through there, three columns a layer.
+    fn add_passed(&mut self, models: &LobeModels, simple: &[bool], cos: f32, weight: f32) -> Vec<f32> {
         let n = models.lanes;
         if !self.steps.is_empty() {
             self.run_steps(models, Toward::Fixed(cos));
@@ -98,12 +117,14 @@ impl Layers {
                 }
             }
         }
+        products
     }
 
     /// Multiplies the three columns of a lobe's weight by what all layers over it let through for the light of the last
     /// evaluation.
-    pub fn scale_lobe(&self, models: &LobeModels, layer: u32, kind: LobeKind, weight: &[f32], out: &mut Vec<f32>) {
-        let (n, diffuse) = (models.lanes, kind.is_even());
+    pub fn scale_lobe(&mut self, models: &LobeModels, index: usize, lobe: Lobe, weight: &[f32], out: &mut Vec<f32>) {
+        let (layer, model) = (lobe.layer, &models.list[lobe.model as usize]);
+        let (n, diffuse) = (models.lanes, model.kind.is_even());
         out.clear();
         out.extend_from_slice(&weight[..3 * n]);
         let innermost = self.lossless_from(layer);
@@ -118,8 +139,12 @@ impl Layers {
             }
             at = here.parent;
         }
-        if diffuse && !kind.is_flat() {
-            out.iter_mut().for_each(|value| *value *= LEANING);
+        if model.kind.leans() {
+            let mut leanings = std::mem::take(&mut self.leanings);
+            if let Some(cover) = self.cover(layer, n) {
+                leanings.apply(models, index, model, cover, out);
+            }
+            self.leanings = leanings;
         }
     }
 

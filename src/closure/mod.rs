@@ -24,6 +24,7 @@ mod flatten;
 mod frames;
 mod layering;
 mod leaf;
+mod leaning;
 mod library;
 mod lobe_kind;
 mod lobe_models;

@@ -43,9 +43,9 @@ pub const GAUSS_8: [(f32, f32); 4] = [
     (0.960_289_86, 0.101_228_54),
 ];
 
-/// Cosines and weights of a mean over the hemisphere, weighted by the cosine: 16 nodes, dense toward the horizon.
+/// Cosines and weights of a mean over the hemisphere, weighted by the cosine: eight nodes, dense toward the horizon.
 ///
-/// Source: Gauss-Legendre of 8 nodes on each half of the cube root of the cosine.
+/// Source: Gauss-Legendre in the cube root of the cosine.
 pub fn cosine_means() -> impl Iterator<Item = (f32, f32)> {
     GAUSS_8.into_iter().flat_map(|(x, weight)| {
         [0.5 - 0.5 * x, 0.5 + 0.5 * x].map(|t| {
