@@ -1,7 +1,8 @@
 //! Shaders that are endless, huge, deep or garbage: always an answer, never a crash and never a long wait.
 
 use std::time::Instant;
-use velour::compile::Compiler;
+use velour::closure::print::tree_text;
+use velour::compile::{Compiler, compile};
 use velour::exec::{Machine, Points, Report, ReportKind};
 
 fn reports(text: &str) -> Vec<Report> {
@@ -126,4 +127,30 @@ fn garbage_is_a_message() {
             bytes.iter().map(|b| b" shader(){};=+-*/.,intfoa\"0123[]<>&|?:\n"[*b as usize % 39]).collect();
         assert!(compiler.check_bytes("noise.osl", &text).diagnostics.has_errors());
     }
+}
+
+/// The text of a closure in the first lane, and its length.
+fn closure_of(body: &str) -> String {
+    let shader = compile(&format!("surface s() {{ {body} }}")).unwrap();
+    let group = shader.group().build().unwrap();
+    let mut machine = Machine::new();
+    let tree = machine.shade(&group, &Points::new(2));
+    tree_text(group.table(), tree, 0)
+}
+
+/// A closure that is added to itself again and again is a small tree with a text beyond all disks.
+#[test]
+fn the_text_of_a_closure_ends() {
+    let doubled = "Ci = diffuse(N); for (int i = 0; i < 60; ++i) Ci = Ci + Ci;";
+    let text = closure_of(doubled);
+    assert_eq!(text.matches("diffuse").count(), 4096);
+    assert!(text.ends_with(&format!("\n\t+ ... and {} more", (1u64 << 60) - 4096)), "{}", &text[text.len() - 80..]);
+    // More terms than can be counted, nested ones, and ones that are nothing.
+    assert!(closure_of(&doubled.replace("60", "90")).ends_with(&format!("... and {} more", u64::MAX)));
+    let nested = closure_of("Ci = diffuse(N); for (int i = 0; i < 40; ++i) Ci = layer(Ci, Ci);");
+    assert!(nested.len() < 1 << 20 && nested.contains("... and 1 more"), "{}", nested.len());
+    assert_eq!(closure_of("Ci = 0 * diffuse(N); for (int i = 0; i < 60; ++i) Ci = Ci + u * Ci;"), "");
+    // As many as there is room for are all written.
+    let whole = closure_of(&doubled.replace("60", "12"));
+    assert!(whole.matches("diffuse").count() == 4096 && !whole.contains("more"));
 }

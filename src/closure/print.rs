@@ -2,6 +2,9 @@
 //!
 //! The sum is written out flat, each leaf with its whole weight: `(w, w, w) * name (arguments)`, joined by `\n\t+ `. A
 //! nested closure stands in its argument's place, in the same notation.
+//!
+//! A tree shares what is used twice, so that a loop which adds a closure to itself has exponentially many terms in its text.
+//! After [`MOST_TERMS`] terms each sum ends with how many more there are.
 
 use super::tree::{Node, NodeId, Param, Tree};
 use crate::lang::closures::ClosureTable;
@@ -12,6 +15,9 @@ use std::fmt::Write;
 pub fn tree_text(table: &ClosureTable, tree: &Tree, lane: usize) -> String {
     closure_text(table, tree, tree.root, lane)
 }
+
+/// So many terms are written, nested ones included.
+pub const MOST_TERMS: usize = 4096;
 
 /// What is left to write, last one first.
 enum Task {
@@ -25,34 +31,79 @@ enum Task {
     Text(String),
 }
 
+/// A sum that is being written.
+#[derive(Default)]
+struct OpenSum {
+    /// Does it have a term already?
+    started: bool,
+    /// How many terms were left out.
+    more: u64,
+}
+
+impl OpenSum {
+    fn plus(&mut self) -> &'static str {
+        if std::mem::replace(&mut self.started, true) { "\n\t+ " } else { "" }
+    }
+
+    /// Writes what stands for the terms that were left out.
+    fn close(mut self, out: &mut String) {
+        if self.more > 0 {
+            let _ = write!(out, "{}... and {} more", self.plus(), self.more);
+        }
+    }
+}
+
+/// How many terms the sum under each node up to `root` has in one lane.
+fn terms(tree: &Tree, root: Option<NodeId>, lane: usize) -> Vec<u64> {
+    let mut terms: Vec<u64> = Vec::new();
+    for node in tree.nodes.iter().take(root.map_or(0, |root| root.0 as usize + 1)) {
+        let of = |child: NodeId| terms.get(child.0 as usize).copied().unwrap_or(0);
+        terms.push(match *node {
+            Node::Add(a, b) => of(a).saturating_add(of(b)),
+            Node::Scale { weight, child } => {
+                // A closure times zero is no closure.
+                if weight.iter().all(|w| tree.float(*w, lane) == 0.0) { 0 } else { of(child) }
+            }
+            Node::Select { mask, then, otherwise } => {
+                if tree.int(mask, lane) != 0 { then } else { otherwise }.map_or(0, of)
+            }
+            Node::Leaf { .. } => 1,
+        });
+    }
+    terms
+}
+
 /// The text of one closure in one lane.
 pub fn closure_text(table: &ClosureTable, tree: &Tree, root: Option<NodeId>, lane: usize) -> String {
+    let terms = terms(tree, root, lane);
     let mut out = String::new();
-    // True while the sum being written has a term already, one entry an open sum.
-    let mut started = vec![false];
+    let mut written = 0;
+    let mut open = vec![OpenSum::default()];
     let mut tasks = vec![Task::Sum(root, [1.0; 3])];
     while let Some(task) = tasks.pop() {
         match task {
             Task::Text(text) => out.push_str(&text),
             Task::Nested(child) => {
-                started.push(false);
+                open.push(OpenSum::default());
                 tasks.extend([Task::End, Task::Sum(child, [1.0; 3])]);
             }
             Task::End => {
-                if started.pop() == Some(false) {
+                let sum = open.pop().unwrap_or_default();
+                if !sum.started && sum.more == 0 {
                     out.push('0');
                 }
+                sum.close(&mut out);
             }
             Task::Sum(None, _) => {}
+            Task::Sum(Some(node), _) if terms[node.0 as usize] == 0 => {}
+            Task::Sum(Some(node), _) if written >= MOST_TERMS => {
+                let sum = open.last_mut();
+                sum.into_iter().for_each(|sum| sum.more = sum.more.saturating_add(terms[node.0 as usize]));
+            }
             Task::Sum(Some(node), weight) => match tree.nodes[node.0 as usize] {
                 Node::Add(a, b) => tasks.extend([Task::Sum(Some(b), weight), Task::Sum(Some(a), weight)]),
                 Node::Scale { weight: w, child } => {
-                    let own = w.map(|w| tree.float(w, lane));
-                    let product = std::array::from_fn(|c| weight[c] * own[c]);
-                    // A closure times zero is no closure.
-                    if own == [0.0; 3] {
-                        continue;
-                    }
+                    let product = std::array::from_fn(|c| weight[c] * tree.float(w[c], lane));
                     tasks.push(Task::Sum(Some(child), product));
                 }
                 Node::Select { mask, then, otherwise } => {
@@ -60,10 +111,8 @@ pub fn closure_text(table: &ClosureTable, tree: &Tree, root: Option<NodeId>, lan
                     tasks.push(Task::Sum(taken, weight));
                 }
                 leaf @ Node::Leaf { .. } => {
-                    if let Some(open) = started.last_mut() {
-                        out.push_str(if *open { "\n\t+ " } else { "" });
-                        *open = true;
-                    }
+                    written += 1;
+                    open.last_mut().into_iter().for_each(|sum| out.push_str(sum.plus()));
                     let [r, g, b] = weight.map(number);
                     let _ = write!(out, "({r}, {g}, {b}) * ");
                     leaf_tasks(table, tree, leaf, lane, &mut tasks);
@@ -71,6 +120,7 @@ pub fn closure_text(table: &ClosureTable, tree: &Tree, root: Option<NodeId>, lan
             },
         }
     }
+    open.pop().unwrap_or_default().close(&mut out);
     out
 }
 
