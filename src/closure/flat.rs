@@ -85,7 +85,7 @@ impl Flat {
     pub fn clear(&mut self, lanes: usize, wo: &Column3, ng: &Column3, backfacing: &[i32]) {
         self.lanes = lanes;
         self.backfacing.clear();
-        if backfacing.iter().any(|&behind| behind != 0) {
+        if backfacing.iter().fold(0, |any, behind| any | behind) != 0 {
             self.backfacing.extend_from_slice(backfacing);
         }
         self.wo.clone_from(wo);

@@ -172,25 +172,27 @@ impl Lights {
         let mut block = LightBlock::new();
         let mut chosen = Chosen { light: [0; WIDTH], chance: [0.0; WIDTH] };
         // A light that is alone is the same for all blocks.
-        if let (Chooser::Alone, [form]) = (&self.chooser, self.forms.as_slice()) {
-            (0..WIDTH).for_each(|k| block.load(k, form, self.chance[0]));
-        }
+        let alone = match (&self.chooser, self.forms.as_slice()) {
+            (Chooser::Alone, [form]) => {
+                (0..WIDTH).for_each(|k| block.load(k, form, self.chance[0]));
+                Some(self.primitives[0])
+            }
+            (Chooser::Alone | Chooser::Power(_) | Chooser::Tree(_), _) => None,
+        };
         for start in (0..len).step_by(WIDTH) {
             let count = WIDTH.min(len - start);
             block.look(lookers.p, [&numbers[0], &numbers[1]], start, count);
-            self.choose(&block, lookers, numbers, start, count, &mut chosen);
             let mut on = [false; WIDTH];
-            for k in 0..count {
-                let light = chosen.light[k] as usize;
-                let there = light < self.forms.len();
-                let light = if there { light } else { 0 };
-                if !matches!(self.chooser, Chooser::Alone) {
-                    block.load(k, &self.forms[light], if there { chosen.chance[k] } else { 0.0 });
-                }
-                let primitive = self.primitives[light];
-                out.primitive[start + k] = primitive;
-                on[k] = primitive == lookers.from[start + k];
-                block.allow(k, there && !on[k]);
+            let (from, primitives) = (&lookers.from[start..start + count], &mut out.primitive[start..start + count]);
+            if let Some(alone) = alone {
+                primitives.fill(alone);
+            } else {
+                self.choose(&block, lookers, numbers, start, count, &mut chosen);
+                self.load(&chosen, &mut block, primitives);
+            }
+            for (k, (primitive, from)) in primitives.iter().zip(from).enumerate() {
+                on[k] = primitive == from;
+                block.allow(k, !on[k]);
             }
             block.sample(count, self.points, self.outlines, &on);
             let (direction, [distance, pdf, u, v]) = block.results();
@@ -199,6 +201,17 @@ impl Lights {
             for (column, row) in columns.into_iter().zip([distance, pdf, u, v]) {
                 column[start..start + count].copy_from_slice(&row[..count]);
             }
+        }
+    }
+
+    /// Takes the lights that were chosen; where there is none, one that has no chance.
+    #[inline(always)]
+    fn load(&self, chosen: &Chosen, block: &mut LightBlock, primitives: &mut [u32]) {
+        for (k, primitive) in primitives.iter_mut().enumerate() {
+            let light = chosen.light[k] as usize;
+            let (light, chance) = if light < self.forms.len() { (light, chosen.chance[k]) } else { (0, 0.0) };
+            block.load(k, &self.forms[light], chance);
+            *primitive = self.primitives[light];
         }
     }
 

@@ -110,7 +110,7 @@ impl LightForm {
     fn solid_angle(&self, points: LightPoints, p: Vec3) -> Option<f32> {
         let Form { a, b, c, .. } = self.form;
         let a = a - p;
-        if points == LightPoints::Area || !is_wide(a, b, c, self.area.length(), self.outline) {
+        if points == LightPoints::Area || !is_wide(a, b, c, self.area, self.outline) {
             return None;
         }
         let angle = match self.outline {
@@ -127,9 +127,10 @@ impl LightForm {
 
 /// True when a light is so close for its size that it is sampled by solid angle.
 #[inline(always)]
-fn is_wide(a: Vec3, b: Vec3, c: Vec3, area: f32, outline: Outline) -> bool {
+fn is_wide(a: Vec3, b: Vec3, c: Vec3, area: Vec3, outline: Outline) -> bool {
     let middle = a + if outline == Outline::Triangle { (b + c) / 3.0 } else { 0.5 * (b + c) };
-    area >= WIDE * middle.length_squared()
+    let distance2 = middle.length_squared();
+    area.length_squared() >= WIDE * WIDE * distance2 * distance2
 }
 
 #[inline(always)]
@@ -243,7 +244,7 @@ impl LightBlock {
         }
         let (a, b, c) = (get(&self.a, k) - get(&self.p, k), get(&self.b, k), get(&self.c, k));
         let kind = if triangle { Outline::Triangle } else { Outline::Parallelogram };
-        if !is_wide(a, b, c, get(&self.area, k).length(), kind) {
+        if !is_wide(a, b, c, get(&self.area, k), kind) {
             return;
         }
         let seen = seen(a, b, c);
@@ -306,7 +307,7 @@ lanes! {
         for k in 0..WIDTH {
             let (a, b, c) = (get(&block.a, k) - get(&block.p, k), get(&block.b, k), get(&block.c, k));
             let here = (block.outline[k] == Outline::Rectangle as u32)
-                & is_wide(a, b, c, get(&block.area, k).length(), Outline::Rectangle);
+                & is_wide(a, b, c, get(&block.area, k), Outline::Rectangle);
             wide[k] = u32::from(here);
             any |= wide[k];
         }

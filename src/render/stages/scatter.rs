@@ -22,8 +22,18 @@ const DEEP: u32 = 10_000;
 /// Samples a direction for each path and sends on those that still carry something.
 pub fn scatter(world: &World, wave: &mut Wave) {
     draw(world, wave);
+    if wave.crossings.is_empty() && wave.facings.is_empty() {
+        send::<false>(world, wave);
+    } else {
+        send::<true>(world, wave);
+    }
+}
+
+/// Sends the paths of the batch on; `REMEMBERS` where they keep more than a path does, which most scenes have no use for.
+fn send<const REMEMBERS: bool>(world: &World, wave: &mut Wave) {
     let Wave { paths, crossings, facings, next, lanes, shading, dropped, .. } = wave;
     let material = lanes.material;
+    let clear = REMEMBERS && world.plan.materials[material].clear;
     let mut endless = false;
     for (lane, &i) in lanes.paths.iter().enumerate() {
         let samples = &shading.samples;
@@ -43,9 +53,9 @@ pub fn scatter(world: &World, wave: &mut Wave) {
             continue;
         }
         // Straight through a surface that shadow rays pass as well is no bounce.
-        let passes = event == event::STRAIGHT && world.plan.materials[material].clear;
+        let passes = clear && event == event::STRAIGHT;
         let mut bounces = lanes.bounce;
-        if let Some(crossing) = crossings.get_mut(i as usize) {
+        if let Some(crossing) = crossings.get_mut(i as usize).filter(|_| REMEMBERS) {
             bounces = crossing.bounces;
             endless |= passes && crossing.passed >= MOST_PASSED;
             if if passes { crossing.passed >= MOST_PASSED } else { bounces >= world.settings.max_bounces } {
@@ -68,10 +78,14 @@ pub fn scatter(world: &World, wave: &mut Wave) {
         path.throughput = throughput;
         let (p, ng) = (shading.points.p.get(lane), shading.points.ng.get(lane));
         let origin = world.accel.leave(p, ng, wi, path.segment.hit.primitive);
-        if let Some(facing) = facings.get_mut(i as usize).filter(|_| matches!(event, event::DIFFUSE | event::GLOSSY)) {
+        let chosen = matches!(event, event::DIFFUSE | event::GLOSSY);
+        if let Some(facing) = facings.get_mut(i as usize).filter(|_| REMEMBERS && chosen) {
             *facing = lanes.facing.get(lane);
         }
-        turn(path, origin, wi, event, if passes { path.pdf_solid_angle } else { pdf_of(event, pdf) });
+        if !passes {
+            path.pdf_solid_angle = if chosen { pdf } else { f32::INFINITY };
+        }
+        turn(path, origin, wi, event);
         next.push(i);
     }
     if endless {
@@ -100,20 +114,14 @@ fn crossed(before: &Crossing, passes: bool, hit: &Hit) -> Crossing {
     }
 }
 
-/// The density of a direction as paths keep it: infinite where there was no choice.
-fn pdf_of(event: u8, pdf: f32) -> f32 {
-    if matches!(event, event::DIFFUSE | event::GLOSSY) { pdf } else { f32::INFINITY }
-}
-
-/// Sends a path on from `origin` toward `wi`, after an event that leaves it with density `pdf`.
+/// Turns a path at `origin` toward `wi`.
 #[inline(always)]
-fn turn(path: &mut Path, origin: Vec3, wi: Vec3, event: u8, pdf: f32) {
+fn turn(path: &mut Path, origin: Vec3, wi: Vec3, event: u8) {
     let segment = &mut path.segment;
     path.from = segment.hit.primitive;
     segment.origin = origin;
     segment.direction = wi;
     segment.width += segment.spread * segment.hit.t;
-    path.pdf_solid_angle = pdf;
     match event {
         event::DIFFUSE => (segment.ray_type, segment.spread) = (ray_type::DIFFUSE, segment.spread.max(DIFFUSE_SPREAD)),
         event::GLOSSY => (segment.ray_type, segment.spread) = (ray_type::GLOSSY, segment.spread.max(GLOSSY_SPREAD)),

@@ -4,6 +4,7 @@ use crate::render::accel::NOTHING;
 use crate::render::emission::found_on_surface;
 use crate::render::wave::{Batch, Wave};
 use crate::render::world::World;
+use glam::Vec3;
 
 /// Sorts the hits by material, stably, so that the order of paths is kept, and cuts them into batches.
 ///
@@ -27,7 +28,10 @@ pub fn sort(world: &World, wave: &mut Wave, bounce: u32) {
         if let Some(emission) = world.emission_of(primitive).filter(|_| world.settings.show_globals == 0) {
             let crossing = crossings.get(i as usize);
             let last = crossing.map_or(bounce, |c| c.bounces) >= world.settings.max_bounces;
-            found_on_surface(world, path, crossing, facings.get(i as usize), emission, material, dropped);
+            // Most surfaces shine nowhere.
+            if emission != Vec3::ZERO {
+                found_on_surface(world, path, crossing, facings.get(i as usize), emission, material, dropped);
+            }
             let plan = &world.plan.materials[material];
             if (last && !plan.clear || !plan.scatters) && !(plan.holds_out && path.clear) {
                 continue;
