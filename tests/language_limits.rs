@@ -143,14 +143,14 @@ fn closure_of(body: &str) -> String {
 fn the_text_of_a_closure_ends() {
     let doubled = "Ci = diffuse(N); for (int i = 0; i < 60; ++i) Ci = Ci + Ci;";
     let text = closure_of(doubled);
-    assert_eq!(text.matches("diffuse").count(), 4096);
-    assert!(text.ends_with(&format!("\n\t+ ... and {} more", (1u64 << 60) - 4096)), "{}", &text[text.len() - 80..]);
+    assert_eq!(text.matches("diffuse").count(), 256);
+    assert!(text.ends_with(&format!("\n\t+ ... and {} more", (1u64 << 60) - 256)), "{}", &text[text.len() - 80..]);
     // More terms than can be counted, nested ones, and ones that are nothing.
     assert!(closure_of(&doubled.replace("60", "90")).ends_with(&format!("... and {} more", u64::MAX)));
     let nested = closure_of("Ci = diffuse(N); for (int i = 0; i < 40; ++i) Ci = layer(Ci, Ci);");
-    assert!(nested.len() < 1 << 20 && nested.contains("... and 1 more"), "{}", nested.len());
+    assert!(nested.len() < 1 << 20 && nested.contains("... and "), "{}", nested.len());
     assert_eq!(closure_of("Ci = 0 * diffuse(N); for (int i = 0; i < 60; ++i) Ci = Ci + u * Ci;"), "");
     // As many as there is room for are all written.
-    let whole = closure_of(&doubled.replace("60", "12"));
-    assert!(whole.matches("diffuse").count() == 4096 && !whole.contains("more"));
+    let whole = closure_of(&doubled.replace("60", "8"));
+    assert!(whole.matches("diffuse").count() == 256 && !whole.contains("more"));
 }

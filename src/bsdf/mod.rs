@@ -84,6 +84,20 @@ pub enum Spread {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Choice(pub u8);
 
+/// How many cosines stand for the light that a model sends to a direction.
+pub const ARRIVALS: usize = 4;
+
+/// Cosines at which light arrives, each with the part of all light that it stands for: together 1.
+pub type Arrivals = [(f32, f32); ARRIVALS];
+
+/// Of a model of which nothing is known: all arrives where it leaves, the last to be taken for lower than that.
+#[inline(always)]
+pub(crate) fn unknown_arrivals(cos: f32) -> Arrivals {
+    let mut all = [(cos, 0.0); ARRIVALS];
+    all[ARRIVALS - 1].1 = 1.0;
+    all
+}
+
 /// Up to five numbers that a model derives from the viewer's direction.
 pub type View = [f32; 5];
 
@@ -171,7 +185,10 @@ pub trait Scatter: Copy + 'static {
             out[i] = self.top_albedo(Vec3::new(x[i], y[i], z[i]));
         }
     }
-    /// pi f of two cosines 0..1 on the mean over the azimuth between them; read for models of [`Spread::Even`].
+    /// True for models that are not [`Spread::Even`], but scatter everywhere, as [`Scatter::turned`] says.
+    const TURNED: bool = false;
+    /// pi f of two cosines 0..1 on the mean over the azimuth between them, up to a factor; read for models of [`Spread::Even`] and
+    /// where [`Scatter::TURNED`].
     ///
     /// Source: the mean of eight azimuths, where a model has no closed form.
     #[inline(always)]
@@ -186,6 +203,13 @@ pub trait Scatter: Copy + 'static {
             }
         }
         sum * (std::f32::consts::PI / 8.0) / cos_i.max(1e-6)
+    }
+    /// True when [`Scatter::arrivals`] says something.
+    const ARRIVALS: bool = false;
+    /// From where light comes that leaves at a cosine 0..1: a rule for its integral, which is good for what arrives lower, and right
+    /// to first order for the rest.
+    fn arrivals(&self, cos: f32) -> Arrivals {
+        unknown_arrivals(cos)
     }
     /// Mean of [`Scatter::top_albedo`] over the hemisphere, weighted by the cosine, at an azimuth between x and y.
     ///

@@ -8,6 +8,7 @@
 use super::batch::{LayerColumns, layer_lanes, sheen_albedo_lanes};
 use super::coats::Coats;
 use super::curves::{Curves, curve_albedo_lanes, push_curves};
+use super::glossy::Glossy;
 use super::leaning::Leanings;
 use super::lobe_kind::Way;
 use super::lobe_models::{Column, LobeModel, LobeModels};
@@ -25,13 +26,15 @@ use std::borrow::Cow;
 
 /// Which direction an albedo is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Toward {
+pub enum Toward<'a> {
     /// The viewer.
     View,
     /// The light of the last evaluation.
     Light,
     /// A fixed cosine to every normal, to integrate over.
     Fixed(f32),
+    /// The same, a cosine a lane.
+    At(&'a [f32]),
 }
 
 /// What a layer covers its base with.
@@ -101,8 +104,8 @@ pub struct Layers {
     seen_at: Vec<u32>,
     seen: Vec<f32>,
     /// Where [`Layers::curves`] has the albedo curves of each layer's sheen, or [`NONE`].
-    curves_at: Vec<u32>,
-    curves: Store<Curves>,
+    pub(super) curves_at: Vec<u32>,
+    pub(super) curves: Store<Curves>,
     /// Is any layer lossless? Then the albedos of tops toward viewer and light are kept, a column a layer.
     pub(super) by_lobe: bool,
     pub(super) top_o: Vec<f32>,
@@ -111,6 +114,11 @@ pub struct Layers {
     pub(super) passed: Vec<f32>,
     /// What corrects the scale of diffuse lobes that lean.
     pub(super) leanings: Leanings,
+    /// What rough lobes are left by the smaller T.
+    pub(super) glossy: Glossy,
+    /// Where the lanes of each lobe whose normal is not that of all its lossless tops begin in `tilted`, or [`NONE`].
+    pub(super) tilted_at: Vec<u32>,
+    pub(super) tilted: Vec<bool>,
     alpha_o: Vec<f32>,
     through: Vec<f32>,
     inverse_mean: Vec<f32>,
@@ -365,7 +373,7 @@ fn column_or<'a>(store: &'a [f32], layer: u32, ones: &'a [f32]) -> &'a [f32] {
 }
 
 /// The curves from an offset on; none from [`NONE`] on.
-fn kept(curves: &[Curves], at: u32) -> Option<&[Curves]> {
+pub(super) fn kept(curves: &[Curves], at: u32) -> Option<&[Curves]> {
     curves.get(at as usize..)
 }
 
@@ -407,17 +415,24 @@ pub fn covering_albedo(models: &LobeModels, model: &LobeModel, toward: Toward, o
             fixed = Column3::splat(between(cos), models.lanes);
             &fixed
         }
+        Toward::At(cosines) => {
+            let mut column = Column3::zeros(models.lanes);
+            cosines.iter().enumerate().for_each(|(lane, cos)| column.set(lane, between(*cos)));
+            fixed = column;
+            &fixed
+        }
     };
     (loops.top_albedo)(models.numbers(model), model.choice, Triples::of(w), out);
 }
 
 /// The cosines of a direction to a model's normal.
-fn cosines<'a>(models: &'a LobeModels, model: &LobeModel, toward: Toward) -> Cow<'a, [f32]> {
+fn cosines<'a>(models: &'a LobeModels, model: &LobeModel, toward: Toward<'a>) -> Cow<'a, [f32]> {
     let frame = &models.frames()[model.frame as usize];
     match toward {
         Toward::View => Cow::Borrowed(&frame.wo.z),
         Toward::Light => Cow::Borrowed(&frame.wi.z),
         Toward::Fixed(value) => Cow::Owned(vec![value; models.lanes]),
+        Toward::At(cosines) => Cow::Borrowed(cosines),
     }
 }
 

@@ -12,7 +12,7 @@ use super::batch::{
 use super::event;
 use super::source::{Each, Numbers, Same, Source, Triples, Views};
 use crate::bsdf::specular::{Single, Specular};
-use crate::bsdf::{Choice, Params, Scatter, Side, Spread};
+use crate::bsdf::{ARRIVALS, Choice, Params, Scatter, Side, Spread};
 use glam::Vec3;
 
 /// What a lobe does with light: a model's table.
@@ -25,6 +25,7 @@ struct Table {
     event: u8,
     even: bool,
     flat: bool,
+    turned: bool,
     way: Way,
 }
 
@@ -74,6 +75,9 @@ pub(super) struct Loops {
     pub top_albedo: fn(Numbers, Choice, Triples, &mut [f32]),
     /// Its mean.
     pub average: fn(Numbers, Choice, &mut [f32]),
+    /// From where light comes, see [`Scatter::arrivals`]: cosines, and the parts they stand for.
+    #[allow(clippy::type_complexity)] // four columns of each, as the line above says
+    pub arrivals: Option<fn(Numbers, Choice, &[f32], [&mut [f32]; ARRIVALS], [&mut [f32]; ARRIVALS])>,
     /// f between a cosine and those of the lanes, see [`Scatter::turned`].
     pub turned: fn(Numbers, Choice, f32, &[f32], &mut [f32]),
 }
@@ -98,6 +102,7 @@ impl LobeKind {
         event: event::STRAIGHT,
         even: false,
         flat: false,
+        turned: false,
         way: Way::Straight,
     });
 
@@ -127,9 +132,19 @@ impl LobeKind {
         self.0.even
     }
 
-    /// True for lobes that scatter about evenly, but are not Lambertian.
+    /// True for lobes that scatter everywhere, about evenly or not, so that what layers do to them is a matter of means.
+    pub(super) fn is_everywhere(self) -> bool {
+        self.0.even || self.0.turned
+    }
+
+    /// True for those that are not Lambertian.
     pub(super) fn leans(self) -> bool {
-        self.0.even && !self.0.flat
+        self.is_everywhere() && !self.0.flat
+    }
+
+    /// True for rough lobes that know from where their light arrives.
+    pub(super) fn is_rough(self) -> bool {
+        self.loops().is_some_and(|loops| loops.arrivals.is_some())
     }
 
     /// What sampling it counts as, see [`event`].
@@ -166,6 +181,7 @@ impl<M: Scatter> OfModel<M> {
         },
         even: matches!(M::SPREAD, Spread::Even),
         flat: M::FLAT,
+        turned: M::TURNED,
         way: Way::Many(&Loops {
             params: M::PARAMS,
             views: M::VIEW,
@@ -179,6 +195,7 @@ impl<M: Scatter> OfModel<M> {
             albedo: albedo::<M>,
             top_albedo: top_albedo::<M>,
             average: average::<M>,
+            arrivals: if M::ARRIVALS { Some(arrivals::<M>) } else { None },
             turned: turned::<M>,
         }),
     };
@@ -196,6 +213,7 @@ impl<S: Single> OfSingle<S> {
         },
         even: false,
         flat: false,
+        turned: false,
         way: Way::One(&Meeting { meet: S::meet, side: S::SIDE }),
     };
 }
@@ -258,4 +276,21 @@ fn average<M: Scatter>(numbers: Numbers, choice: Choice, out: &mut [f32]) {
 
 fn turned<M: Scatter>(numbers: Numbers, choice: Choice, node: f32, cos: &[f32], out: &mut [f32]) {
     with_source!(numbers, choice, |source| turned_lanes::<M, _>(source, node, cos, out));
+}
+
+fn arrivals<M: Scatter>(
+    numbers: Numbers,
+    choice: Choice,
+    cos: &[f32],
+    at: [&mut [f32]; ARRIVALS],
+    parts: [&mut [f32]; ARRIVALS],
+) {
+    with_source!(numbers, choice, |source| {
+        for (lane, cos) in cos.iter().enumerate() {
+            let model: M = source.at(lane);
+            for (k, (arrives, part)) in model.arrivals(cos.abs().min(1.0)).into_iter().enumerate() {
+                (at[k][lane], parts[k][lane]) = (arrives, part);
+            }
+        }
+    });
 }

@@ -4,14 +4,13 @@
 //! when the integral of k f cos is T(o) times the lobe's albedo. Over a Lambertian or translucent lobe that is k = T(i) T(o) over
 //! the mean of T (Kelemen and Szirmay-Kalos 2001), and so it is nearly over the other diffuse models ([`super::leaning`] has the
 //! difference); over a mirror it is the T of both directions, which are alike, and min(T(i), T(o)) is that there and safe
-//! over everything else. Layers around each other multiply, and of a diffuse lobe the mean is that of their product.
-//!
-//! Decision (2026-11-29): rough lobes take the smaller T, which loses some light, because their own scale needs a table for
-//! each pair of top and base; instead of a scale that could gain.
+//! over everything else; reflecting facets are left more than that ([`super::glossy`]). Layers around each other multiply, and of
+//! a diffuse lobe the mean is that of their product. Where the base has another normal than a top, the means are not those of
+//! the base's light, and the smaller T is taken.
 
 use super::batch::MOST_SCALE;
 use super::flat::Lobe;
-use super::layering::{Layer, Layers, Top, Toward, model_albedo, top_albedo};
+use super::layering::{Layer, Layers, Top, Toward, kept, model_albedo, top_albedo};
 use super::leaning::Cover;
 use super::lobe_models::{LobeModel, LobeModels, Values};
 use super::store::NONE;
@@ -35,12 +34,14 @@ impl Layers {
         self.by_lobe && self.lossless_from(layer).is_some()
     }
 
-    /// Computes the means that lossless layers divide by, and what corrects the lobes under them that lean.
+    /// Computes the means that lossless layers divide by, and what corrects the lobes under them that lean or are rough.
     pub fn prepare_lossless(&mut self, models: &LobeModels, lobes: &[Lobe]) {
-        self.leanings.clear();
         if !self.by_lobe {
             return;
         }
+        self.leanings.clear();
+        self.glossy.clear();
+        self.find_tilted(models, lobes);
         let model_of = |lobe: &Lobe| models.list[lobe.model as usize];
         let leaning = |lobe: &Lobe| model_of(lobe).kind.leans() && self.lossless_from(lobe.layer).is_some();
         let leans = lobes.iter().any(leaning);
@@ -68,6 +69,71 @@ impl Layers {
             }
         }
         self.leanings = leanings;
+        let mut glossy = std::mem::take(&mut self.glossy);
+        for (index, lobe) in lobes.iter().enumerate().filter(|(_, lobe)| model_of(lobe).kind.is_rough()) {
+            if self.lossless_from(lobe.layer).is_some() {
+                let mut passed = |cos: &[f32], out: &mut [f32]| self.passed_toward(models, lobe.layer, cos, out);
+                glossy.prepare(models, index, &model_of(lobe), &mut passed);
+            }
+        }
+        self.glossy = glossy;
+    }
+
+    /// What the lossless layers at and around one let through at a cosine a lane, three columns.
+    fn passed_toward(&mut self, models: &LobeModels, layer: u32, cos: &[f32], out: &mut [f32]) {
+        let n = models.lanes;
+        if !self.steps.is_empty() {
+            self.run_steps(models, Toward::At(cos));
+        }
+        out.fill(1.0);
+        let mut at = self.lossless_from(layer);
+        while let Some(index) = at {
+            let here = self.list[index as usize];
+            let curves = kept(&self.curves, self.curves_at[index as usize]);
+            top_albedo(&here, curves, models, Toward::At(cos), &self.values, &mut self.scratch);
+            for (out, tint) in out.chunks_exact_mut(n).zip(here.tints) {
+                for ((out, tint), albedo) in out.iter_mut().zip(models.column(tint)).zip(&self.scratch) {
+                    *out *= (1.0 - tint * albedo).clamp(0.0, 1.0);
+                }
+            }
+            at = self.lossless_from(here.parent);
+        }
+    }
+
+    /// Finds the lanes in which a lobe has another normal than one of the lossless tops over it.
+    fn find_tilted(&mut self, models: &LobeModels, lobes: &[Lobe]) {
+        let n = models.lanes;
+        self.tilted_at.clear();
+        self.tilted.clear();
+        for lobe in lobes {
+            let start = self.tilted.len();
+            self.tilted_at.push(NONE);
+            let Some(frame) = models.frame_of(&models.list[lobe.model as usize]) else { continue };
+            let mut at = self.lossless_from(lobe.layer);
+            let mut tops = Vec::new();
+            while let Some(index) = at {
+                let layer = self.list[index as usize];
+                match layer.top {
+                    Top::Lobe(top) => tops.push(top),
+                    // Of trees the leaves are not told apart.
+                    Top::Tree(_) => tops.extend(self.leaves.iter().map(|(model, _)| *model)),
+                    Top::Boundary => {}
+                }
+                at = self.lossless_from(layer.parent);
+            }
+            tops.sort_unstable();
+            tops.dedup();
+            let frames = tops.iter().filter_map(|top| models.frame_of(&models.list[*top as usize]));
+            for top in frames.filter(|top| top.normal != frame.normal) {
+                self.tilted.resize(start + n, false);
+                for (lane, tilted) in self.tilted[start..].iter_mut().enumerate() {
+                    *tilted |= top.normal.get(lane).dot(frame.normal.get(lane)) < 1.0 - 1e-5;
+                }
+            }
+            if let Some(last) = self.tilted_at.last_mut().filter(|_| self.tilted.len() > start) {
+                *last = start as u32;
+            }
+        }
     }
 
     /// What covers a lobe under this layer without loss.
@@ -124,7 +190,7 @@ impl Layers {
     /// evaluation.
     pub fn scale_lobe(&mut self, models: &LobeModels, index: usize, lobe: Lobe, weight: &[f32], out: &mut Vec<f32>) {
         let (layer, model) = (lobe.layer, &models.list[lobe.model as usize]);
-        let (n, diffuse) = (models.lanes, model.kind.is_even());
+        let (n, diffuse) = (models.lanes, model.kind.is_everywhere());
         out.clear();
         out.extend_from_slice(&weight[..3 * n]);
         let innermost = self.lossless_from(layer);
@@ -139,12 +205,26 @@ impl Layers {
             }
             at = here.parent;
         }
+        if model.kind.is_rough() {
+            let mut glossy = std::mem::take(&mut self.glossy);
+            let mut passed = |cos: &[f32], out: &mut [f32]| self.passed_toward(models, layer, cos, out);
+            glossy.apply(models, index, model, &mut passed, out);
+            self.glossy = glossy;
+        }
         if model.kind.leans() {
             let mut leanings = std::mem::take(&mut self.leanings);
             if let Some(cover) = self.cover(layer, n) {
                 leanings.apply(models, index, model, cover, out);
             }
             self.leanings = leanings;
+        }
+        let start = self.tilted_at.get(index).copied().unwrap_or(NONE);
+        if start != NONE {
+            let tilted = &self.tilted[start as usize..start as usize + n];
+            for lane in (0..n).filter(|lane| tilted[*lane]) {
+                let part = self.smaller_part(models, layer, lane);
+                (0..3).for_each(|c| out[c * n + lane] = weight[c * n + lane] * part[c]);
+            }
         }
     }
 

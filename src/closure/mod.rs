@@ -22,6 +22,7 @@ mod families;
 mod flat;
 mod flatten;
 mod frames;
+mod glossy;
 mod layering;
 mod leaf;
 mod leaning;

@@ -17,7 +17,7 @@ pub fn tree_text(table: &ClosureTable, tree: &Tree, lane: usize) -> String {
 }
 
 /// So many terms are written, nested ones included.
-pub const MOST_TERMS: usize = 4096;
+pub const MOST_TERMS: usize = 256;
 
 /// What is left to write, last one first.
 enum Task {

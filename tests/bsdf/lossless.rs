@@ -116,6 +116,10 @@ fn nothing_gains_over_any_base() {
         "conductor_bsdf(N, vector(1,0,0), .3, .3, color(0), color(1e6), \"ggx\")",
         "conductor_bsdf(N, vector(1,0,0), .05, .05, color(0), color(1e6), \"ggx\")",
         "dielectric_bsdf(N, vector(1,0,0), color(1), color(1), .3, .3, 1.5, \"ggx\")",
+        "conductor_bsdf(N, vector(1,0,0), .6, .1, color(0), color(1e6), \"ggx\")",
+        "conductor_bsdf(normalize(N + vector(.5,0,0)), vector(1,0,0), .3, .3, color(0), color(1e6), \"ggx\")",
+        "diffuse(normalize(N + vector(-.5,0,0)))",
+        "diffuse(normalize(N + vector(.9,0,0)))",
         "sheen_bsdf(N, color(1), .5)",
         "(.5 * diffuse(N) + .5 * reflection(N, 0))",
         "layer(.5 * diffuse(N), diffuse(N))",
@@ -128,7 +132,7 @@ fn nothing_gains_over_any_base() {
                 let mut lobes = lobes(&expression, narrow(direction(cos, 0.3)), Layering::Lossless);
                 let mut random = Random(SEED);
                 let total = sample_mean(&mut lobes, 1, 20_000, || random.number())[0][0];
-                assert!(total <= 1.0 + 1e-2, "{expression} at {cos}: {total}");
+                assert!(total <= 1.0 + 2e-3, "{expression} at {cos}: {total}");
             }
         }
     }
@@ -158,6 +162,32 @@ fn the_rule_is_reciprocal() {
                 (there - back).abs().max_element() <= 1e-5 * there.max_element().max(0.1),
                 "{base}: {there} {back}"
             );
+        }
+    }
+}
+/// What a base sends of a white sky under a white sheen, less what it should.
+fn over_facets(base: &str, r: f64, cos: f64) -> f64 {
+    let e = |text: &str| {
+        let mut lobes = lobes(text, narrow(direction(cos, 0.3)), Layering::Lossless);
+        let mut random = Random(SEED);
+        sample_mean(&mut lobes, 1, 60_000, || random.number())[0][0]
+    };
+    let sheen = |base: &str| e(&format!("sheen({base}, N, color(1), {r:?})"));
+    let top = sheen("0 * diffuse(N)");
+    sheen(base) - top - (1.0 - top) * e(base)
+}
+
+/// The smaller T alone loses up to 8.6 % here.
+#[test]
+fn cloth_over_rough_metal_loses_at_most_a_per_cent() {
+    for (facets, alphas) in [("ggx", &[0.05, 0.1, 0.2, 0.3][..]), ("beckmann", &[0.1, 0.3])] {
+        for alpha in alphas {
+            let base =
+                format!("conductor_bsdf(N, vector(1,0,0), {alpha:?}, {alpha:?}, color(0), color(1e6), \"{facets}\")");
+            for r in [0.1, 0.25, 0.5, 1.0] {
+                let lost = COSINES.map(|cos| over_facets(&base, r, cos));
+                assert!(lost.iter().all(|x| (-1e-2..=2e-3).contains(x)), "{facets} {alpha}, r = {r}: {lost:.4?}");
+            }
         }
     }
 }

@@ -173,7 +173,9 @@ impl FacetTable {
             for j in 0..COSINES {
                 let cos = cosine_at(j as f32 / (COSINES - 1) as f32, alpha);
                 points.clear();
-                facets(&distribution, geometry, [alpha, cos], [&along, &across], &mut points);
+                facets(&distribution, geometry, [alpha, cos], [&along, &across], |om, _, weight| {
+                    points.push(Node { x: om, weight });
+                });
                 let rule: [Node; NODES] = gauss_rule(&points);
                 let mut cell = [0.0; 2 * NODES];
                 for k in 0..NODES {
@@ -340,16 +342,16 @@ impl Stretched {
     }
 }
 
-/// The measure of cosines o.m as points with weights, whose sum is the albedo of a full mirror.
+/// The measure of cosines o.m, and of those of the light, as points with weights, whose sum is the albedo of a full mirror.
 ///
 /// Source: visible normals of GGX are the projection of a hemisphere (Heitz 2018, "Sampling the GGX Distribution of Visible
 /// Normals"), integrated by chords of the disc; each weighs G2 / G1 and the ratio of the distributions.
-fn facets<D: Distribution>(
+pub(super) fn facets<D: Distribution>(
     d: &D,
     geometry: Geometry,
     [alpha, cos]: [f32; 2],
     rules: [&[Node]; 2],
-    out: &mut Vec<Node>,
+    mut point: impl FnMut(f64, f64, f64),
 ) {
     let ggx = Ggx(Widths { x: alpha, y: alpha });
     let (alpha, c) = (f64::from(alpha), f64::from(cos));
@@ -387,7 +389,7 @@ fn facets<D: Distribution>(
             let shadowing = masking * geometry.part(lambdas, [c, up.max(0.0)], om, m[2]);
             let ratio = f64::from(d.d(facet) / ggx.d(facet).max(1e-30));
             let weight = width * node.weight * 6.0 * t * (1.0 - t) * (to - from) * shadowing * ratio;
-            out.push(Node { x: om.clamp(0.0, 1.0), weight });
+            point(om.clamp(0.0, 1.0), up.clamp(0.0, 1.0), weight);
         }
     }
 }

@@ -77,6 +77,7 @@ impl<F: Fresnel> Scatter for Between<F> {
     const COLORED: bool = F::COLORED;
     const VIEW: usize = 4;
     const TOP: bool = true;
+    const TURNED: bool = true;
 
     #[inline(always)]
     fn prepare(params: Params) -> Self {
@@ -121,6 +122,14 @@ impl<F: Fresnel> Scatter for Between<F> {
     #[inline(always)]
     fn sample_from(&self, _wo: Vec3, _view: View, xi: Vec3) -> Vec3 {
         cosine_hemisphere(xi.x, xi.y)
+    }
+
+    /// Of stretched facets that of round ones of the mean width.
+    #[inline(always)]
+    fn turned(&self, cos_i: f32, cos_o: f32) -> f32 {
+        let table = WhiteTable::of(self.facets, self.geometry);
+        let width = (self.width[0] * self.width[1]).sqrt();
+        table.lost(width, cos_i) * table.lost(width, cos_o)
     }
 
     #[inline(always)]

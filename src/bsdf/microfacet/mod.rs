@@ -19,6 +19,7 @@
 //! outside at cosine .05, 2.75 and 1.53 inside at .3 and .7 (width .3, index 1.5), with weights up to 32.
 
 pub mod albedo;
+pub mod arrivals;
 pub mod beckmann;
 pub mod between;
 pub mod blinn;
@@ -36,7 +37,7 @@ pub use geometry::{Facets, Geometry, Method, Sampling, Scattering};
 pub use ggx::Ggx;
 
 use super::fresnel::{Dielectric, Fresnel, limited, refracted};
-use super::{Choice, Eval, Params, Scatter, Side, Spread, View, select};
+use super::{Arrivals, Choice, Eval, Params, Scatter, Side, Spread, View, select, unknown_arrivals};
 use albedo::{BLOCK, FacetTable};
 use distribution::{Distribution, Widths};
 use glam::Vec3;
@@ -310,6 +311,18 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         let reflected = table.color(&self.fresnel, self.width_toward(w), w.z.abs().min(1.0));
         let left = if self.multiple { self.left(w) } else { 1.0 };
         self.taken((reflected * (1.0 / left)).min(Vec3::ONE))
+    }
+
+    const ARRIVALS: bool = !REFRACT;
+
+    /// Those of a full mirror, which are safe for all: a Fresnel term that rises toward grazing light sends more of it from below.
+    /// Of stretched facets nothing is known.
+    fn arrivals(&self, cos: f32) -> Arrivals {
+        let widths = self.visible.0;
+        if widths.x != widths.y {
+            return unknown_arrivals(cos);
+        }
+        arrivals::ArrivalTable::of::<D>(self.geometry()).at(widths.x, cos)
     }
 
     /// Where both widths are equal, the table is looked up in one of its axes only.
