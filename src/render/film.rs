@@ -63,6 +63,16 @@ impl TileSums {
         }
     }
 
+    /// Puts all there is into the first half, so that the second is empty.
+    pub fn join(&mut self) {
+        let [first, second] = &mut self.halves;
+        for (sum, more) in first.sums.iter_mut().zip(&mut second.sums) {
+            (0..PARTS).for_each(|k| sum[k] += more[k]);
+            *more = [0.0; PARTS];
+        }
+        first.samples += std::mem::take(&mut second.samples);
+    }
+
     /// Notes that each pixel has had one sample more.
     pub fn count(&mut self, half: usize) {
         self.halves[half].samples += 1;
@@ -134,16 +144,23 @@ impl Film {
         sums.iter().flat_map(|sum| (0..channels).map(move |k| mean(sum, k))).collect()
     }
 
-    /// The mean square error of each tile's pixels, from the difference of the two halves: a quarter of its square.
+    /// The mean square error of each tile's pixels, from the difference of the two halves: a quarter of its square where they have
+    /// as many samples.
     ///
-    /// Gives: mean over pixels and colors, in squared units of radiance. The halves draw their samples from sequences of
-    /// their own, so the estimate is unbiased for any one number of samples. Infinite where a half has no sample.
+    /// Gives: mean over pixels and colors, in squared units of radiance. The halves are one sequence cut at its last power of two, of
+    /// which the second fills the gaps of the first, so that the true error is rather smaller: on Figure 1 by a factor between 1 and 2.2.
+    /// Infinite where a half has no sample.
+    ///
+    /// Decision (2026-11-29): halves of one sequence, because the picture is then that of a plain render, instead of one sequence
+    /// for each, of which the estimate has no bias and the picture 1.5 times the squared error.
     pub fn errors(&self, settings: &Settings) -> Vec<f64> {
         let [a, b] = [0..1, 1..2].map(|half| self.picture(settings, half, 3));
         let error = |number: usize| {
-            if self.tiles[number].halves.iter().any(|half| half.samples == 0) {
+            let [first, second] = self.tiles[number].halves.each_ref().map(|half| f64::from(half.samples));
+            if first * second == 0.0 {
                 return f64::INFINITY;
             }
+            let shares = first * second / ((first + second) * (first + second));
             let tile = Tile::number(settings, number);
             let mut sum = 0.0;
             for y in tile.y..tile.y + tile.height {
@@ -151,7 +168,7 @@ impl Film {
                 let row = start..start + 3 * tile.width as usize;
                 sum += a[row.clone()].iter().zip(&b[row]).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
             }
-            sum / (12.0 * f64::from(tile.pixels()))
+            shares * sum / (3.0 * f64::from(tile.pixels()))
         };
         (0..self.tiles.len()).map(error).collect()
     }

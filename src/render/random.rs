@@ -31,9 +31,9 @@ pub fn dimension_set(bounce: u32, what: Use) -> u32 {
     1 + bounce.saturating_mul(SETS_PER_BOUNCE).saturating_add(what as u32)
 }
 
-/// The scramble of one pixel in one half of the film; half 0 is all there is when no error is asked for.
-pub fn pixel_seed(seed: u32, x: u32, y: u32, half: u32) -> u32 {
-    mix(mix(mix(seed ^ 0x9e37_79b9).wrapping_add(x)).wrapping_add(y)) ^ half.wrapping_mul(0xa511_e9b3)
+/// The scramble of one pixel.
+pub fn pixel_seed(seed: u32, x: u32, y: u32) -> u32 {
+    mix(mix(mix(seed ^ 0x9e37_79b9).wrapping_add(x)).wrapping_add(y))
 }
 
 /// Up to four numbers in [0, 1) a lane, a column each: of sample `indices[i]` of the pixel of `seeds[i]`; all of one
@@ -135,7 +135,7 @@ mod tests {
     fn every_number_is_in_range_at_any_depth_and_index() {
         for index in [0, 1, 65_535, 65_536, 1 << 24] {
             for set in [0, 1, NUM_DIMENSION_SETS_4D - 1, NUM_DIMENSION_SETS_4D, u32::MAX] {
-                assert!(sample(pixel_seed(1, 2, 3, 0), index, set).iter().all(|x| (0.0..1.0).contains(x)));
+                assert!(sample(pixel_seed(1, 2, 3), index, set).iter().all(|x| (0.0..1.0).contains(x)));
             }
         }
     }
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn sixteen_samples_fill_sixteen_strata() {
-        let seed = pixel_seed(7, 11, 13, 1);
+        let seed = pixel_seed(7, 11, 13);
         for dimension in 0..4 {
             let mut seen = [false; 16];
             (0..16).for_each(|i| seen[(sample(seed, i, 5)[dimension] * 16.0) as usize] = true);

@@ -69,7 +69,7 @@ impl FromStr for LightPoints {
     }
 }
 
-/// Independent halves of a film's samples that an error can be estimated from.
+/// Halves of a film's samples that an error can be estimated from.
 pub(super) const HALVES: usize = 2;
 
 /// The settings of one render.
@@ -161,7 +161,7 @@ impl Settings {
         self.noise.is_some() || self.seconds.is_some()
     }
 
-    /// How many independent halves the samples are split into.
+    /// How many halves the samples are split into.
     pub(super) fn halves(&self) -> usize {
         if self.adapts() { HALVES } else { 1 }
     }

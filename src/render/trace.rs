@@ -49,11 +49,31 @@ fn leave_background_out(wave: &mut Wave) {
 
 /// Adds `samples` of each of the tile's pixels to `sums`.
 ///
+/// Where the film has two halves, new samples go to the second; at each power of two all there is moves to the first, so that both
+/// are evenly spread.
+pub fn render_tile(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u32>, sums: &mut TileSums) {
+    let halves = world.settings.halves();
+    sums.open(tile, halves);
+    let mut first = samples.start;
+    while first < samples.end {
+        let mut end = samples.end;
+        if halves > 1 {
+            end = end.min((first + 1).next_power_of_two());
+            if first.is_power_of_two() {
+                sums.join();
+            }
+        }
+        render_part(world, wave, tile, first..end, halves - 1, sums);
+        first = end;
+    }
+}
+
+/// Adds `samples` of each of the tile's pixels to one half of `sums`.
+///
 /// Whole pixels are traced at a time when few samples make a wave, else as many samples of all pixels as fill it. Sums
 /// take sample after sample, and of each the pixels in order, which is the order of the paths in neither.
-pub fn render_tile(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u32>, sums: &mut TileSums) {
-    let (halves, wave_size) = (world.settings.halves(), world.settings.wave_size.max(1) as u32);
-    sums.open(tile, halves);
+fn render_part(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u32>, half: usize, sums: &mut TileSums) {
+    let wave_size = world.settings.wave_size.max(1) as u32;
     let count = tile.pixels();
     let per_pixel = (wave_size / count).clamp(1, samples.len().max(1) as u32);
     let pixels_at_once = (wave_size / per_pixel).clamp(1, count);
@@ -67,7 +87,6 @@ pub fn render_tile(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u
             }
             trace(world, wave);
             for sample in range.clone() {
-                let half = sample as usize % halves;
                 let (mut x, mut y) = (first % tile.width, first / tile.width);
                 let paths = (sample - range.start) as usize..wave.paths.len();
                 for path in paths.step_by(range.len()) {
@@ -77,6 +96,6 @@ pub fn render_tile(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u
                 }
             }
         }
-        range.for_each(|sample| sums.count(sample as usize % halves));
+        range.for_each(|_| sums.count(half));
     }
 }

@@ -288,7 +288,7 @@ mod tests {
     use crate::scene::{Primitive, Shape};
 
     fn vector(i: u32, k: u32) -> Vec3 {
-        let number = |j| random::sample(random::pixel_seed(31, i, k + j, 0), 0, 0)[0];
+        let number = |j| random::sample(random::pixel_seed(31, i, k + j), 0, 0)[0];
         Vec3::new(number(0), number(1), number(2)) * 2.0 - 1.0
     }
 

@@ -147,7 +147,7 @@ mod tests {
     impl Numbers {
         fn next(&mut self) -> f64 {
             self.0 += 1;
-            f64::from(random::sample(random::pixel_seed(11, self.0, 0, 0), 0, 0)[0])
+            f64::from(random::sample(random::pixel_seed(11, self.0, 0), 0, 0)[0])
         }
 
         fn vector(&mut self) -> DVec3 {
@@ -187,7 +187,7 @@ mod tests {
             }
             let (mut observed, mut expected) = ([0.0; CELLS * CELLS], [0.0; CELLS * CELLS]);
             for i in 0..SAMPLES {
-                let [x, y, _, _] = random::sample(random::pixel_seed(5, i, 1, 0), 0, 0);
+                let [x, y, _, _] = random::sample(random::pixel_seed(5, i, 1), 0, 0);
                 let (u, v) = if right { seen.in_rectangle(whole, x, y) } else { seen.in_triangle(whole, x, y) };
                 let cell = [u, v].map(|a| ((a * CELLS as f32) as usize).min(CELLS - 1));
                 observed[cell[1] * CELLS + cell[0]] += 1.0;

@@ -254,7 +254,7 @@ mod tests {
     use crate::render::{counts, random};
 
     fn number(i: u32, k: u32) -> f32 {
-        random::sample(random::pixel_seed(21, i, k, 0), 0, 0)[0]
+        random::sample(random::pixel_seed(21, i, k), 0, 0)[0]
     }
 
     fn vector(i: u32, k: u32) -> Vec3 {

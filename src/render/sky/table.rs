@@ -188,7 +188,7 @@ mod tests {
 
     fn numbers(count: u32) -> impl Iterator<Item = [f32; 2]> {
         (0..count).map(|i| {
-            let r = random::sample(random::pixel_seed(5, i, 0, 0), 0, 0);
+            let r = random::sample(random::pixel_seed(5, i, 0), 0, 0);
             [r[0], r[1]]
         })
     }

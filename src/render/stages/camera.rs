@@ -4,7 +4,6 @@ use crate::render::camera::directions;
 use crate::render::crossing::Crossing;
 use crate::render::path::Path;
 use crate::render::random;
-use crate::render::settings::HALVES;
 use crate::render::wave::Wave;
 use crate::render::world::World;
 use glam::Vec3;
@@ -13,14 +12,13 @@ use std::ops::Range;
 /// Starts a path for each of `samples` of the pixel at (`x`, `y`).
 pub fn start(world: &World, wave: &mut Wave, x: u32, y: u32, samples: Range<u32>) {
     let settings = &world.settings;
-    let halves = settings.halves() as u32;
-    let seeds: [u32; HALVES] = std::array::from_fn(|half| random::pixel_seed(settings.seed, x, y, half as u32));
+    let seed = random::pixel_seed(settings.seed, x, y);
     let lanes = &mut wave.camera;
     lanes.draws.resize(samples.len());
     lanes.directions.resize(samples.len());
     for (lane, sample) in samples.enumerate() {
-        lanes.draws.seeds[lane] = seeds[(sample % halves) as usize];
-        lanes.draws.indices[lane] = sample / halves;
+        lanes.draws.seeds[lane] = seed;
+        lanes.draws.indices[lane] = sample;
     }
     match settings.jitter {
         true => lanes.draws.draw(random::CAMERA, 2),
