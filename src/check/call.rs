@@ -69,29 +69,12 @@ impl Checker<'_> {
             self.report(diagnostic.also(declared, "declared here").help("give the variable another name"));
             return;
         }
-        if crate::lang::closures::NOT_YET.contains(&name.name.as_str()) {
-            self.report(self.not_rendered(name));
-            return;
-        }
         let diagnostic = Diagnostic::error("E0405", name.span, format!("there is no function `{}`", name.name));
         let mut known: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().map(String::as_str)).collect();
         builtins::names().for_each(|name| known.push(name));
         self.closures.specs.iter().for_each(|spec| known.push(spec.name));
         let help = nearest(&name.name, known.into_iter()).map(|near| format!("did you mean `{near}`?"));
         self.report(diagnostic.help(help.unwrap_or_else(|| "`velour info` lists functions and closures".to_owned())));
-    }
-
-    /// The message for a closure without a scattering model.
-    fn not_rendered(&self, name: &Ident) -> Diagnostic {
-        if name.name.ends_with("_vdf") {
-            let message = format!("`{}` fills a volume, and velour renders surfaces only", name.name);
-            return Diagnostic::error("E0412", name.span, message).help(
-                "for a cloudy body use `subsurface_bssrdf(N, albedo, radius, anisotropy)`, for a clear one `transparent_bsdf()` times its color",
-            );
-        }
-        let message = format!("velour does not render `{}` yet", name.name);
-        let known: Vec<&str> = self.closures.specs.iter().map(|spec| spec.name).collect();
-        Diagnostic::error("E0412", name.span, message).help(format!("its closures are {}", known.join(", ")))
     }
 
     /// The candidate that fits best, or nothing; an undecidable tie is reported.

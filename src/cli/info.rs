@@ -6,7 +6,7 @@ use super::info_file::shader_text;
 use super::speak::say;
 use crate::compile::CompileError;
 use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
-use crate::lang::closures::{self, ClosureTable};
+use crate::lang::closures::ClosureTable;
 use crate::lang::describe::{closure_head, closure_text};
 use crate::scene::nearest;
 use std::collections::BTreeSet;
@@ -65,7 +65,6 @@ fn everything(table: &ClosureTable, header: &[FunctionDecl]) -> String {
     for spec in &table.specs {
         out += &format!("    {}\n        {}\n", wrapped(&closure_head(spec)), wrapped(spec.doc));
     }
-    out += &format!("\nclosures that are known but not run yet:\n{}", columns(closures::NOT_YET));
     let names = function_names(header);
     let (missing, present): (Vec<&str>, Vec<&str>) = names.into_iter().partition(|name| NOT_YET.contains(name));
     out += &format!("\nfunctions:\n{}", columns(&present));

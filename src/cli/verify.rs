@@ -7,7 +7,6 @@ use super::threads::capped;
 use crate::closure::settings::Shadowing;
 use crate::closure::{Layering, Settings};
 use crate::compile::{Compiler, Shader};
-use crate::lang::closures::NOT_YET;
 use crate::measure::verify::{
     Check, ClosureSubject, Effort, Finding, Line, Report, ShaderSubject, Subject, Verdict, verify,
 };
@@ -140,9 +139,6 @@ fn shader_subject(
 }
 
 fn unknown(compiler: &Compiler, name: &str) -> String {
-    if NOT_YET.contains(&name) {
-        return format!("error: velour knows the closure `{name}` and does not run it yet");
-    }
     let names: Vec<&str> = compiler.closures.specs().iter().map(|spec| spec.name).collect();
     let help = match nearest(name, &names) {
         Some(near) => format!("did you mean `{near}`?"),

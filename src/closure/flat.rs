@@ -10,6 +10,17 @@ use super::tree::NodeId;
 use crate::math::columns::Column3;
 use glam::Vec3;
 
+/// A closure that is not rendered, as a batch has met it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Its name.
+    pub closure: &'static str,
+    /// Where it is in the tree.
+    pub node: NodeId,
+    /// What is to be said of it.
+    pub what: &'static str,
+}
+
 /// How many dropped lanes are listed.
 const MOST_DROPPED: usize = 256;
 
@@ -76,8 +87,10 @@ pub struct Flat {
     pub holdout: Vec<f32>,
     /// Did anything emit in the last batch, so that emission and holdout must be cleared?
     pub emits: bool,
-    /// What was left out.
+    /// What was left out because a number in it is none.
     pub dropped: Vec<Dropped>,
+    /// What was left out because it is not rendered.
+    pub left_out: Vec<LeftOut>,
 }
 
 impl Flat {
@@ -98,6 +111,7 @@ impl Flat {
         self.lobes.clear();
         self.weights.clear();
         self.dropped.clear();
+        self.left_out.clear();
     }
 
     /// The model of a lobe.

@@ -5,7 +5,7 @@
 //! is summed there, so `Ci = Ci + Ci` fifty times is one lobe and not 2^50.
 
 use super::darkening::{Coated, darken};
-use super::flat::{Flat, Lobe};
+use super::flat::{Flat, LeftOut, Lobe};
 use super::frames::Seen;
 use super::layering::{Layer, Top};
 use super::leaf::{Leaf, LeafMaker, Part};
@@ -179,6 +179,13 @@ impl Pass<'_> {
         if leaf.emits || leaf.hole {
             let weight = leaf.tint.map_or(weight, |tint| self.sweep.weights.times(tree, weight, tint));
             self.sweep.emitters.push(Emitter { weight, layer, hole: leaf.hole, node: name.1 });
+        }
+        if let Some((what, lanes)) = &leaf.left_out {
+            let weighs = |lane: usize| (0..3).any(|c| self.sweep.weights.get(weight, c, lane, n) != 0.0);
+            let out = LeftOut { closure: name.0, node: name.1, what };
+            if !self.flat.left_out.contains(&out) && (0..n).any(|lane| lanes[lane] && weighs(lane)) {
+                self.flat.left_out.push(out);
+            }
         }
         fits &= self.sweep.send(n, leaf.top, layer, weight);
         let mut paired_with = None;

@@ -67,6 +67,8 @@ pub(super) struct Leaf {
     pub emits: bool,
     /// True for holes.
     pub hole: bool,
+    /// What is said of lanes in which something is not rendered, and those lanes.
+    pub left_out: Option<(&'static str, Vec<bool>)>,
 }
 
 /// A shading frame of the leaf being made.
@@ -215,6 +217,12 @@ impl<'a> LeafMaker<'a> {
     /// Adds a lobe in all lanes, whose model takes these parameters in its own order.
     pub fn lobe(&mut self, kind: LobeKind, frame: FrameId, params: &[Floats]) -> PartId {
         self.add(LobeRequest::new(kind, frame, params))
+    }
+
+    /// Leaves the closure out of the lanes in which it would be `seen`; a render says `what` of it.
+    pub fn leave_out(&mut self, what: &'static str, seen: impl Fn(&Self, usize) -> bool) {
+        let lanes: Vec<bool> = (0..self.lanes()).map(|lane| seen(self, lane)).collect();
+        self.leaf.left_out = Some((what, lanes));
     }
 
     /// Lets light pass straight on.

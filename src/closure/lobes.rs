@@ -1,7 +1,7 @@
 //! The lobes of a batch: what a closure tree scatters, ready to be evaluated and sampled for all lanes at once.
 
 use super::evaluate::{Evaluation, evaluate, straight};
-use super::flat::{Dropped, Flat};
+use super::flat::{Dropped, Flat, LeftOut};
 use super::flatten::{Sweep, flatten};
 use super::layering::{Toward, covering_albedo};
 use super::library::Library;
@@ -76,6 +76,11 @@ impl Lobes {
     /// What was left out, one entry a closure and lane.
     pub fn dropped(&self) -> &[Dropped] {
         &self.flat.dropped
+    }
+
+    /// What was left out of the batch because it is not rendered, each closure of the tree once.
+    pub fn left_out(&self) -> &[LeftOut] {
+        &self.flat.left_out
     }
 
     /// True when some lobe scatters into more than one direction, so that lights are worth asking.

@@ -46,7 +46,7 @@ pub mod words;
 pub use arguments::{Argument, Arguments, Color, Float, Int, Nested, Normal, ReadArguments, Text, Vector, Word};
 pub use definition::ClosureDef;
 pub use evaluate::Evaluation;
-pub use flat::Dropped;
+pub use flat::{Dropped, LeftOut};
 pub use leaf::{FrameId, Gate, LeafMaker, LobeRequest, PartId};
 pub use library::{Library, RegisterError};
 pub use lobe_kind::LobeKind;

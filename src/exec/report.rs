@@ -54,6 +54,11 @@ impl Report {
         Report { kind: ReportKind::Mistake, place: Arc::new(place), lane: 0, text }
     }
 
+    /// A warning that no single lane gives, at a place.
+    pub fn warning_at(place: ReportPlace, text: String) -> Self {
+        Report { kind: ReportKind::Warning, place: Arc::new(place), lane: 0, text }
+    }
+
     /// A warning of the host's own, without a place.
     pub fn warning(text: String) -> Self {
         Report { kind: ReportKind::Warning, place: Arc::default(), lane: 0, text }

@@ -200,6 +200,3 @@ impl ClosureTable {
         ids.filter(move |(_, spec)| spec.name == name)
     }
 }
-
-/// Closures of the OSL header that velour has no scattering model for; a call is an error that names it.
-pub const NOT_YET: &[&str] = &["anisotropic_vdf", "medium_vdf"];

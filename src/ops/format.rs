@@ -232,7 +232,8 @@ fn integer(out: &mut String, c: Conversion, value: i32) {
 
 fn float(out: &mut String, c: Conversion, value: f64) {
     let start = out.len();
-    let sign = sign_of(c, value.is_sign_negative());
+    // Which sign a not-a-number has is defined nowhere.
+    let sign = sign_of(c, value.is_sign_negative() && !value.is_nan());
     let a = value.abs();
     out.push_str(sign);
     let precision = c.precision.unwrap_or(6);
@@ -383,6 +384,7 @@ mod tests {
         assert_eq!(f("%g", f32::INFINITY), "inf");
         assert_eq!(f("%06.1f", f32::NEG_INFINITY), "  -inf");
         assert_eq!(f("%f", f32::NAN), "nan");
+        assert_eq!(f("%4g", -f32::NAN), " nan");
         assert_eq!(f("%d", 1.0), "1.000000");
     }
 

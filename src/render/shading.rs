@@ -81,6 +81,10 @@ impl Shading {
         if !self.lobes.dropped().is_empty() {
             report_dropped(group, tree, &self.lobes, &mut news);
         }
+        for left_out in self.lobes.left_out() {
+            let place = tree.site(left_out.node).map(|site| group.place(site)).unwrap_or_default();
+            news.push(Report::warning_at(place, format!("`{}` {}", left_out.closure, left_out.what)));
+        }
         news.extend(self.machine.take_reports());
         for report in news {
             let fatal = report.is_fatal();

@@ -32,6 +32,32 @@ fn any_number_of_clear_sheets_is_invisible() {
     }
 }
 
+/// A medium that neither absorbs nor scatters is nothing; another one is left out, and that is said once.
+#[test]
+fn a_medium_is_nothing_or_said_to_be_left_out() {
+    let with = |medium: &str| sheets(2, &format!("Ci = layer(transparent(), {medium});"), |s| s.alpha = false);
+    for medium in [
+        "medium_vdf(color(0), 1, color(1), 0, 1, 0)",
+        "medium_vdf(color(.5), 0, color(1), .3, 1.5, 2)",
+        "anisotropic_vdf(color(1), color(0), 0)",
+        "0 * anisotropic_vdf(color(1), color(1), 0)",
+        "(u > 2 ? 1.0 : 0.0) * medium_vdf(color(0), 1, color(.5), 0, 1, 0)",
+    ] {
+        let image = with(medium);
+        assert!(image.about.reports.is_empty(), "{medium}: {:?}", image.about.reports);
+        assert!(image.pixels.iter().all(|p| (p - 1.0).abs() < 1e-5), "{medium}");
+    }
+    for medium in
+        ["medium_vdf(color(0), 1, color(1, .9, 1), 0, 1, 0)", "(.5 * u) * anisotropic_vdf(color(1), color(.1), 0)"]
+    {
+        let image = with(&medium.replace("* anis", "* 1e3 * anis"));
+        let [report] = image.about.reports.as_slice() else { panic!("{:?}", image.about.reports) };
+        let report = report.to_string();
+        assert!(report.starts_with("memory:1:") && report.contains("_vdf` fills a volume"), "{report}");
+        assert!(!image.about.reports[0].is_wrong());
+    }
+}
+
 #[test]
 fn clear_sheets_are_no_bounces() {
     let image = sheets(20, "Ci = transparent();", |s| (s.max_bounces, s.alpha) = (1, false));

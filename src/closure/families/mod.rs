@@ -12,6 +12,7 @@ mod lights;
 mod straight;
 mod toon;
 mod usual;
+mod volumes;
 
 use super::definition::ClosureDef;
 
@@ -51,5 +52,7 @@ pub(super) fn all() -> Vec<ClosureDef> {
         lights::uniform_edf(),
         toon::diffuse_toon(),
         toon::glossy_toon(),
+        volumes::anisotropic(),
+        volumes::medium(),
     ]
 }
