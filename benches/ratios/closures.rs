@@ -108,7 +108,9 @@ pub fn rows(table: &Table) {
     lobe(table, "burley", "burley_diffuse_bsdf(N, color(1), 0.4)", burley::Burley::prepare(params([0.4])));
     let eon = eon::Eon::prepare(params([0.4, 1.0, 1.0, 1.0]));
     lobe(table, "eon", "oren_nayar_diffuse_bsdf(N, color(1), 0.4, \"energy_compensation\", 1)", eon);
-    lobe(table, "velvet", "ashikhmin_velvet(N, 0.4)", velvet::Velvet::prepare(params([0.4])));
+    lobe(table, "velvet", "ashikhmin_velvet(N, 0.4)", velvet::form_2000::Velvet2000::prepare(params([0.4])));
+    let of_2007 = velvet::Velvet::prepare(params([0.4]));
+    lobe(table, "velvet of 2007", "ashikhmin_velvet(N, 0.4, \"form\", \"2007\")", of_2007);
     lobe(table, "sheen", "sheen_bsdf(N, color(1), 0.3)", Sheen::<EXACT, true>::prepare(params([0.3])));
     let widths = params([0.3, 0.3, 1.5]);
     let ggx = Microfacet::<Ggx, Dielectric, false>::prepare(widths);

@@ -53,11 +53,18 @@ fn runs_of(side: &mut Side) -> usize {
     ((SLICE / once) as usize).clamp(1, 1 << 20)
 }
 
+/// True under `cargo bench`. Under `cargo test --bench ratios` each side runs a few times, to see whether both are the same
+/// function still.
+fn measures() -> bool {
+    std::env::args().any(|word| word == "--bench")
+}
+
 /// Times two sides in turns.
 pub fn pair(mut here: Side, mut limit: Side) -> Pair {
+    let turns = if measures() { TURNS } else { 1 };
     let (runs_here, runs_limit) = (runs_of(&mut here), runs_of(&mut limit));
     let (mut a, mut b, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
-    for _ in 0..TURNS {
+    for _ in 0..turns {
         let (x, y) = (slice(&mut here, runs_here), slice(&mut limit, runs_limit));
         a.push(x);
         b.push(y);
