@@ -185,10 +185,7 @@ pub trait Scatter: Copy + 'static {
             out[i] = self.top_albedo(Vec3::new(x[i], y[i], z[i]));
         }
     }
-    /// True for models that are not [`Spread::Even`], but scatter everywhere, as [`Scatter::turned`] says.
-    const TURNED: bool = false;
-    /// pi f of two cosines 0..1 on the mean over the azimuth between them, up to a factor; read for models of [`Spread::Even`] and
-    /// where [`Scatter::TURNED`].
+    /// pi f of two cosines 0..1 on the mean over the azimuth between them; read for models of [`Spread::Even`].
     ///
     /// Source: the mean of eight azimuths, where a model has no closed form.
     #[inline(always)]

@@ -25,7 +25,6 @@ struct Table {
     event: u8,
     even: bool,
     flat: bool,
-    turned: bool,
     way: Way,
 }
 
@@ -102,7 +101,6 @@ impl LobeKind {
         event: event::STRAIGHT,
         even: false,
         flat: false,
-        turned: false,
         way: Way::Straight,
     });
 
@@ -132,14 +130,9 @@ impl LobeKind {
         self.0.even
     }
 
-    /// True for lobes that scatter everywhere, about evenly or not, so that what layers do to them is a matter of means.
-    pub(super) fn is_everywhere(self) -> bool {
-        self.0.even || self.0.turned
-    }
-
-    /// True for those that are not Lambertian.
+    /// True for lobes that scatter about evenly, but are not Lambertian.
     pub(super) fn leans(self) -> bool {
-        self.is_everywhere() && !self.0.flat
+        self.0.even && !self.0.flat
     }
 
     /// True for rough lobes that know from where their light arrives.
@@ -181,7 +174,6 @@ impl<M: Scatter> OfModel<M> {
         },
         even: matches!(M::SPREAD, Spread::Even),
         flat: M::FLAT,
-        turned: M::TURNED,
         way: Way::Many(&Loops {
             params: M::PARAMS,
             views: M::VIEW,
@@ -213,7 +205,6 @@ impl<S: Single> OfSingle<S> {
         },
         even: false,
         flat: false,
-        turned: false,
         way: Way::One(&Meeting { meet: S::meet, side: S::SIDE }),
     };
 }

@@ -190,7 +190,7 @@ impl Layers {
     /// evaluation.
     pub fn scale_lobe(&mut self, models: &LobeModels, index: usize, lobe: Lobe, weight: &[f32], out: &mut Vec<f32>) {
         let (layer, model) = (lobe.layer, &models.list[lobe.model as usize]);
-        let (n, diffuse) = (models.lanes, model.kind.is_everywhere());
+        let (n, diffuse) = (models.lanes, model.kind.is_even());
         out.clear();
         out.extend_from_slice(&weight[..3 * n]);
         let innermost = self.lossless_from(layer);

@@ -11,6 +11,7 @@
 use super::albedo::{COSINES, WIDTHS, around, cosine_at, cosine_axis, cubic, facets, width_at, width_axis};
 use super::distribution::{Distribution, Widths};
 use super::geometry::{Facets, Geometry};
+use super::white::WhiteTable;
 use crate::bsdf::{ARRIVALS, Arrivals, select};
 use crate::math::quadrature::{Node, gauss_legendre, gauss_rule};
 use std::sync::OnceLock;
@@ -33,33 +34,57 @@ impl ArrivalTable {
         TABLES[D::FACETS as usize][geometry as usize].get_or_init(|| ArrivalTable::build::<D>(geometry))
     }
 
+    /// The table of what facets reflect more than once, which arrives alike whatever the direction it leaves to.
+    pub fn between(facets: Facets, geometry: Geometry) -> &'static ArrivalTable {
+        static TABLES: [[OnceLock<ArrivalTable>; Geometry::ALL.len()]; Facets::COUNT] =
+            [const { [const { OnceLock::new() }; Geometry::ALL.len()] }; Facets::COUNT];
+        TABLES[facets as usize][geometry as usize].get_or_init(|| {
+            let white = WhiteTable::of(facets, geometry);
+            // In the cube root of the cosine what is lost is smooth down to the horizon.
+            let rule = gauss_legendre(48, 0.0, 1.0);
+            ArrivalTable::new(|alpha, _, point| {
+                for node in &rule {
+                    let up = node.x * node.x * node.x;
+                    point(up, node.weight * node.x.powi(5) * f64::from(white.lost(alpha, up as f32)));
+                }
+            })
+        })
+    }
+
     fn build<D: Distribution>(geometry: Geometry) -> Self {
         let (along, across) = (gauss_legendre(28, 0.0, 1.0), gauss_legendre(14, 0.0, 1.0));
+        ArrivalTable::new(|alpha, cos, point| {
+            let distribution = D::new(Widths { x: alpha, y: alpha });
+            facets(&distribution, geometry, [alpha, cos], [&along, &across], |_, up, weight| point(up, weight));
+        })
+    }
+
+    /// A table from the points of the measure of light of a width and a cosine: cosines at which it arrives, and weights.
+    fn new(measure: impl Fn(f32, f32, &mut dyn FnMut(f64, f64))) -> Self {
         let mut cells = Vec::with_capacity(WIDTHS * COSINES);
-        let mut points = Vec::with_capacity(along.len() * across.len());
+        let mut points = Vec::new();
         for i in 0..WIDTHS {
             let alpha = width_at(i as f32 / (WIDTHS - 1) as f32);
-            let distribution = D::new(Widths { x: alpha, y: alpha });
             for j in 0..COSINES {
-                let cos = cosine_at(j as f32 / (COSINES - 1) as f32, alpha);
+                let cos = f64::from(cosine_at(j as f32 / (COSINES - 1) as f32, alpha));
                 let (mut total, mut upper, mut moment) = (0.0, 0.0, 0.0);
                 points.clear();
-                facets(&distribution, geometry, [alpha, cos], [&along, &across], |_, up, weight| {
+                measure(alpha, cos as f32, &mut |up, weight| {
                     total += weight;
-                    if up < f64::from(cos) {
-                        points.push(Node { x: up / f64::from(cos), weight });
+                    if up < cos {
+                        points.push(Node { x: up / cos, weight });
                     } else {
                         upper += weight;
-                        moment += weight * (up - f64::from(cos)) / (1.0 - f64::from(cos)).max(1e-12);
+                        moment += weight * (up - cos) / (1.0 - cos).max(1e-12);
                     }
                 });
                 let rule: [Node; LOWER] = gauss_rule(&points);
+                let scale = 1.0 / f64::max(total, 1e-30);
                 let mut cell = [0.0; 2 * ARRIVALS];
                 for k in 0..LOWER {
-                    let weight = rule[k].weight / f64::max(total, 1e-30);
+                    let weight = rule[k].weight * scale;
                     (cell[k], cell[ARRIVALS + k]) = (weight as f32, (weight * rule[k].x) as f32);
                 }
-                let scale = 1.0 / f64::max(total, 1e-30);
                 (cell[LOWER], cell[ARRIVALS + LOWER]) = ((upper * scale) as f32, (moment * scale) as f32);
                 cells.push(cell);
             }

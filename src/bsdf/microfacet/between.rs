@@ -4,11 +4,12 @@
 //! sampling, and a boundary whose facets lose next to nothing does without it; instead of scaling the whole lobe by its white
 //! albedo (Turquin 2019), which is not reciprocal and tints what was reflected once.
 
+use super::arrivals::ArrivalTable;
 use super::distribution::{MIN_ALPHA, Widths};
 use super::geometry::{Facets, Geometry};
 use super::white::WhiteTable;
 use crate::bsdf::fresnel::{Fresnel, limited};
-use crate::bsdf::{Choice, Eval, Params, Scatter, Spread, View, select};
+use crate::bsdf::{Arrivals, Choice, Eval, Params, Scatter, Spread, View, select, unknown_arrivals};
 use crate::math::quadrature::GAUSS_8;
 use crate::math::warp::cosine_hemisphere;
 use glam::Vec3;
@@ -77,7 +78,7 @@ impl<F: Fresnel> Scatter for Between<F> {
     const COLORED: bool = F::COLORED;
     const VIEW: usize = 4;
     const TOP: bool = true;
-    const TURNED: bool = true;
+    const ARRIVALS: bool = true;
 
     #[inline(always)]
     fn prepare(params: Params) -> Self {
@@ -124,12 +125,12 @@ impl<F: Fresnel> Scatter for Between<F> {
         cosine_hemisphere(xi.x, xi.y)
     }
 
-    /// Of stretched facets that of round ones of the mean width.
-    #[inline(always)]
-    fn turned(&self, cos_i: f32, cos_o: f32) -> f32 {
-        let table = WhiteTable::of(self.facets, self.geometry);
-        let width = (self.width[0] * self.width[1]).sqrt();
-        table.lost(width, cos_i) * table.lost(width, cos_o)
+    /// The same toward all directions, of which more or fewer lie lower. Of stretched facets nothing is known.
+    fn arrivals(&self, cos: f32) -> Arrivals {
+        match self.width {
+            [x, y] if x == y => ArrivalTable::between(self.facets, self.geometry).at(x, cos),
+            _ => unknown_arrivals(cos),
+        }
     }
 
     #[inline(always)]
@@ -142,5 +143,24 @@ impl<F: Fresnel> Scatter for Between<F> {
     fn top_albedo(&self, w: Vec3) -> f32 {
         let table = WhiteTable::of(self.facets, self.geometry);
         self.color(self.mean_lost(table)).max_element() * self.lost(table, w)
+    }
+
+    /// Where both widths are equal, color and row are found once.
+    #[inline(always)]
+    fn top_albedos(&self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
+        let n = out.len();
+        let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
+        let table = WhiteTable::of(self.facets, self.geometry);
+        let color = self.color(self.mean_lost(table)).max_element();
+        if self.width[0] == self.width[1] {
+            let row = table.row(self.width[0]);
+            for i in 0..n {
+                out[i] = color * row.lost(z[i].abs().min(1.0));
+            }
+            return;
+        }
+        for i in 0..n {
+            out[i] = color * self.lost(table, Vec3::new(x[i], y[i], z[i]));
+        }
     }
 }

@@ -14,7 +14,7 @@ use super::albedo::{around, cosine_at, cosine_axis, cubic, width_at, width_axis}
 use super::distribution::{Distribution, Widths};
 use super::geometry::{Facets, Geometry};
 use super::ggx::{Ggx, sample_visible};
-use super::white::WhiteTable;
+use super::white::{WhiteRow, WhiteTable, weighted};
 use super::{Beckmann, Blinn};
 use crate::bsdf::fresnel::{dielectric, refracted};
 use crate::bsdf::power::log2;
@@ -118,19 +118,63 @@ fn white<D: Distribution>(geometry: Geometry, [alpha, cos]: [f32; 2], eta: f32) 
 ///
 /// Domain: alpha 1e-3..1, cosine 0..1, index (transmitted over incident) > 0. Gives: 0..1.
 pub fn left(facets: Facets, geometry: Geometry, alpha: f32, cos: f32, eta: f32) -> f32 {
-    let at = index_axis(eta) * (INDICES - 1) as f32;
-    let first = (at as usize).min(INDICES - 2);
-    let by_index = [1.0 - (at - first as f32), at - first as f32];
-    let (row, by_row) = cubic(narrow_axis(alpha), WIDTHS);
+    let around_here = Neighbours::new(facets, geometry, alpha, eta);
     let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
-    let mut sum = 0.0;
-    for (index, a) in [first, first + 1].into_iter().zip(by_index).filter(|(_, a)| *a != 0.0) {
-        let table = table(facets, geometry, index);
-        for (row, b) in around(row, WIDTHS).into_iter().zip(by_row) {
-            for (column, c) in around(column, COSINES).into_iter().zip(by_column) {
-                sum += a * b * c * table[row * COSINES + column];
-            }
-        }
+    let four = around(column, COSINES).map(|column| around_here.at(column));
+    let mirror = 1.0 - WhiteTable::of(facets, geometry).lost(alpha, cos);
+    (weighted(four, by_column) * mirror).clamp(1e-2, 1.0)
+}
+
+/// The tables and rows between which an index and a width lie.
+struct Neighbours {
+    tables: [&'static Table; 2],
+    by_index: [f32; 2],
+    rows: [usize; 4],
+    by_row: [f32; 4],
+}
+
+impl Neighbours {
+    fn new(facets: Facets, geometry: Geometry, alpha: f32, eta: f32) -> Self {
+        let at = index_axis(eta) * (INDICES - 1) as f32;
+        let first = (at as usize).min(INDICES - 2);
+        let by_index = [1.0 - (at - first as f32), at - first as f32];
+        // A table that does not count is not made.
+        let [near, far] = [0, 1].map(|k| if by_index[k] == 0.0 { 1 - k } else { k });
+        let tables = [near, far].map(|k| table(facets, geometry, first + k));
+        let (row, by_row) = cubic(narrow_axis(alpha), WIDTHS);
+        Neighbours { tables, by_index, rows: around(row, WIDTHS), by_row }
     }
-    (sum * (1.0 - WhiteTable::of(facets, geometry).lost(alpha, cos))).clamp(1e-2, 1.0)
+
+    /// What is left at one of the tables' cosines.
+    #[inline(always)]
+    fn at(&self, column: usize) -> f32 {
+        let [near, far] =
+            self.tables.map(|table| weighted(self.rows.map(|row| table[row * COSINES + column]), self.by_row));
+        self.by_index[0] * near + self.by_index[1] * far
+    }
+}
+
+/// What one width of one index leaves at all cosines.
+#[derive(Clone, Copy, Debug)]
+pub struct LeftRow {
+    alpha: f32,
+    left: [f32; COSINES],
+    mirror: WhiteRow,
+}
+
+impl LeftRow {
+    /// The row of a width and an index.
+    pub fn new(facets: Facets, geometry: Geometry, alpha: f32, eta: f32) -> Self {
+        let around_here = Neighbours::new(facets, geometry, alpha, eta);
+        let mirror = WhiteTable::of(facets, geometry).row(alpha);
+        LeftRow { alpha, left: std::array::from_fn(|column| around_here.at(column)), mirror }
+    }
+
+    /// [`left`] of the row's width and index, with the same bits.
+    #[inline(always)]
+    pub fn at(&self, cos: f32) -> f32 {
+        let (column, by_column) = cubic(cosine_axis(cos, self.alpha), COSINES);
+        let four = around(column, COSINES).map(|column| self.left[column]);
+        (weighted(four, by_column) * (1.0 - self.mirror.lost(cos))).clamp(1e-2, 1.0)
+    }
 }

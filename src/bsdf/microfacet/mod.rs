@@ -332,8 +332,10 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
         let table = FacetTable::of::<D>(self.geometry());
         let widths = self.visible.0;
-        if widths.x == widths.y && !self.multiple {
+        if widths.x == widths.y && !(self.multiple && F::COLORED) {
             let row = table.row(self.width_toward(Vec3::Z));
+            let (facets, geometry) = (D::FACETS, self.geometry());
+            let left = self.multiple.then(|| glass::LeftRow::new(facets, geometry, widths.x, self.fresnel.eta()));
             let mut cos = [0.0; BLOCK];
             for first in (0..n).step_by(BLOCK) {
                 let count = BLOCK.min(n - first);
@@ -344,7 +346,9 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
                 let [x, y, z] = row.colors(&self.fresnel, &cos);
                 for l in 0..count {
                     let color = if F::COLORED { Vec3::new(x[l], y[l], z[l]) } else { Vec3::splat(x[l]) };
-                    out[first + l] = self.taken(color.clamp(Vec3::ZERO, Vec3::ONE));
+                    let color = color.clamp(Vec3::ZERO, Vec3::ONE);
+                    let left = left.map_or(1.0, |row| row.at(cos[l]).clamp(1e-2, 1.0));
+                    out[first + l] = self.taken((color * (1.0 / left)).min(Vec3::ONE));
                 }
             }
             return;

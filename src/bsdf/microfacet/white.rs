@@ -8,6 +8,28 @@ use super::{Beckmann, Blinn, Ggx};
 use crate::math::quadrature::gauss_legendre;
 use std::sync::OnceLock;
 
+/// A sum of four weighted numbers.
+#[inline(always)]
+pub(super) fn weighted([a, b, c, d]: [f32; 4], by: [f32; 4]) -> f32 {
+    (by[0] * a + by[1] * b) + (by[2] * c + by[3] * d)
+}
+
+/// 1 - E of one width.
+#[derive(Clone, Copy, Debug)]
+pub struct WhiteRow {
+    alpha: f32,
+    lost: [f32; COSINES],
+}
+
+impl WhiteRow {
+    /// [`WhiteTable::lost`] of the row's width, with the same bits.
+    #[inline(always)]
+    pub fn lost(&self, cos: f32) -> f32 {
+        let (column, by_column) = cubic(cosine_axis(cos, self.alpha), COSINES);
+        weighted(around(column, COSINES).map(|column| self.lost[column]), by_column).clamp(0.0, 1.0)
+    }
+}
+
 /// 1 - E of a distribution under a shadowing term, over width and cosine, and its cosine-weighted mean over width.
 #[derive(Debug)]
 pub struct WhiteTable {
@@ -49,14 +71,22 @@ impl WhiteTable {
     pub fn lost(&self, alpha: f32, cos: f32) -> f32 {
         let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
         let (column, by_column) = cubic(cosine_axis(cos, alpha), COSINES);
-        let (rows, columns) = (around(row, WIDTHS), around(column, COSINES));
-        let mut sum = 0.0;
-        for (row, weight) in rows.into_iter().zip(by_row) {
-            let line = &self.lost[row * COSINES..(row + 1) * COSINES];
-            let [a, b, c, d] = columns.map(|column| line[column]);
-            sum += weight * (by_column[0] * a + by_column[1] * b + by_column[2] * c + by_column[3] * d);
-        }
-        sum.clamp(0.0, 1.0)
+        let rows = around(row, WIDTHS);
+        let four = around(column, COSINES).map(|column| self.over_widths(rows, by_row, column));
+        weighted(four, by_column).clamp(0.0, 1.0)
+    }
+
+    /// 1 - E at many cosines, for one width.
+    #[inline(always)]
+    pub fn row(&self, alpha: f32) -> WhiteRow {
+        let (row, by_row) = cubic(width_axis(alpha), WIDTHS);
+        let rows = around(row, WIDTHS);
+        WhiteRow { alpha, lost: std::array::from_fn(|column| self.over_widths(rows, by_row, column)) }
+    }
+
+    #[inline(always)]
+    fn over_widths(&self, rows: [usize; 4], by_row: [f32; 4], column: usize) -> f32 {
+        weighted(rows.map(|row| self.lost[row * COSINES + column]), by_row)
     }
 
     /// The mean of 1 - E over the hemisphere, weighted by the cosine.
