@@ -268,11 +268,7 @@ fn info_lists_explains_and_reads_files() {
     assert!(out.contains("keyword parameters:") && out.contains("string shadowing: "), "{out}");
     assert_eq!(place.say(&["info", "distance"]).1.lines().count(), 2, "a builtin and an overload of the header");
     let (_, out, _) = place.say(&["info"]);
-    assert!(
-        out.contains("medium_vdf(color albedo, float transmission_depth")
-            && out.contains("functions that are known but not run yet:\n"),
-        "{out}"
-    );
+    assert!(out.contains("medium_vdf(color albedo") && out.contains("functions that are known but not run"), "{out}");
     place.file("own.osl", "float twice(float x) { return 2 * x; }\n");
     let (_, out, _) = place.say(&["info", "twice", "--stdosl", "own.osl"]);
     assert_eq!(out, "float twice(float x)\n");
