@@ -144,6 +144,12 @@ pub trait Scatter: Copy + 'static {
     fn adjustment(&self, _wo: Vec3) -> f32 {
         1.0
     }
+    /// Multiplies numbers by [`Scatter::adjustment`] of many directions, one column a component, with the same bits.
+    fn adjust(&self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
+        for (i, value) in out.iter_mut().enumerate() {
+            *value *= self.adjustment(Vec3::new(x[i], y[i], z[i]));
+        }
+    }
     /// f |cos_i| and density of one direction; zero where the model scatters nothing, never NaN.
     fn eval_from(&self, wo: Vec3, view: View, wi: Vec3) -> Eval;
     /// What f |cos_i| is multiplied with to give its color, >= 0.

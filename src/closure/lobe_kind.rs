@@ -230,10 +230,7 @@ fn view<M: Scatter>(numbers: Numbers, choice: Choice, wo: Triples, out: &mut [f3
         view_lanes::<M, _>(source, wo, out);
         if let (Some(column), true) = (M::ADJUSTED, M::adjusts(choice)) {
             let n = wo.x.len();
-            for (i, value) in out[column * n..(column + 1) * n].iter_mut().enumerate() {
-                let model: M = source.at(i);
-                *value *= model.adjustment(wo.at(i));
-            }
+            Source::<M>::adjust(&source, wo, &mut out[column * n..(column + 1) * n]);
         }
     });
 }

@@ -26,6 +26,8 @@ pub trait Source<M>: Copy {
     fn narrow(self, lanes: usize) -> Self;
     /// The model of a lane.
     fn at(&self, lane: usize) -> M;
+    /// Multiplies by the adjustments of all lanes.
+    fn adjust(&self, w: Triples<'_>, out: &mut [f32]);
     /// The top albedos of all lanes.
     fn top_albedos(&self, w: Triples<'_>, out: &mut [f32]);
 }
@@ -54,6 +56,10 @@ impl<M: Scatter> Source<M> for Same<M> {
         self.0
     }
 
+    fn adjust(&self, w: Triples<'_>, out: &mut [f32]) {
+        self.0.adjust([w.x, w.y, w.z], out);
+    }
+
     #[inline(always)]
     fn top_albedos(&self, w: Triples<'_>, out: &mut [f32]) {
         self.0.top_albedos([w.x, w.y, w.z], out);
@@ -71,6 +77,13 @@ impl<M: Scatter> Source<M> for Each<'_> {
     fn at(&self, lane: usize) -> M {
         let value = |k: usize| if k < M::PARAMS { self.columns[k][lane] } else { 0.0 };
         M::prepare(twelve!(value)).choose(self.choice)
+    }
+
+    fn adjust(&self, w: Triples<'_>, out: &mut [f32]) {
+        for (i, value) in out.iter_mut().enumerate() {
+            let model: M = self.at(i);
+            *value *= model.adjustment(w.at(i));
+        }
     }
 
     #[inline(always)]

@@ -127,6 +127,13 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
         (0.1 + 0.9 * least).clamp(1e-2, 1.0)
     }
 
+    /// What [`Microfacet::left`] is at all cosines, where one row of a table says it.
+    fn left_row(&self) -> Option<glass::LeftRow> {
+        let (widths, geometry) = (self.visible.0, self.geometry());
+        let one = widths.x == widths.y && !F::COLORED;
+        one.then(|| glass::LeftRow::new(D::FACETS, geometry, widths.x, self.fresnel.eta()))
+    }
+
     /// What this half takes from a base, given what the reflecting half does.
     #[inline(always)]
     fn taken(&self, reflected: Vec3) -> f32 {
@@ -250,6 +257,17 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         1.0 / self.left(wo)
     }
 
+    /// Where both widths are equal, the table is looked up in one of its axes only.
+    fn adjust(&self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
+        let row = self.left_row();
+        for (i, value) in out.iter_mut().enumerate() {
+            *value *= match &row {
+                Some(row) => 1.0 / row.at(z[i].abs().min(1.0)).clamp(1e-2, 1.0),
+                None => self.adjustment(Vec3::new(x[i], y[i], z[i])),
+            };
+        }
+    }
+
     #[inline(always)]
     fn eval_from(&self, wo: Vec3, view: View, wi: Vec3) -> Eval {
         if REFRACT { self.refract(wo, view, wi) } else { self.reflect(wo, view, wi) }
@@ -334,8 +352,7 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         let widths = self.visible.0;
         if widths.x == widths.y && !(self.multiple && F::COLORED) {
             let row = table.row(self.width_toward(Vec3::Z));
-            let (facets, geometry) = (D::FACETS, self.geometry());
-            let left = self.multiple.then(|| glass::LeftRow::new(facets, geometry, widths.x, self.fresnel.eta()));
+            let left = if self.multiple { self.left_row() } else { None };
             let mut cos = [0.0; BLOCK];
             for first in (0..n).step_by(BLOCK) {
                 let count = BLOCK.min(n - first);
@@ -347,7 +364,7 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
                 for l in 0..count {
                     let color = if F::COLORED { Vec3::new(x[l], y[l], z[l]) } else { Vec3::splat(x[l]) };
                     let color = color.clamp(Vec3::ZERO, Vec3::ONE);
-                    let left = left.map_or(1.0, |row| row.at(cos[l]).clamp(1e-2, 1.0));
+                    let left = left.as_ref().map_or(1.0, |row| row.at(cos[l]).clamp(1e-2, 1.0));
                     out[first + l] = self.taken((color * (1.0 / left)).min(Vec3::ONE));
                 }
             }
