@@ -52,7 +52,7 @@ fn results(group: &Group, width: usize) -> (Vec<String>, Vec<u64>) {
             match report.kind {
                 ReportKind::Output => printed.push(report.text),
                 // What is said once a batch depends on the width by design.
-                ReportKind::Error | ReportKind::Mistake | ReportKind::Warning | ReportKind::File(_) => {}
+                ReportKind::Error | ReportKind::Mistake(_) | ReportKind::Warning | ReportKind::File(_) => {}
                 ReportKind::Fatal => panic!("{report}"),
             }
         }

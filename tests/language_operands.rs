@@ -151,7 +151,7 @@ fn an_index_of_a_component_is_clamped_and_reported_known_or_not() {
                 for report in reports(&text) {
                     match report.kind {
                         ReportKind::Output => printed += &report.text,
-                        ReportKind::Mistake => said.push(report.text),
+                        ReportKind::Mistake(_) => said.push(report.text),
                         _ => panic!("{report:?}"),
                     }
                 }

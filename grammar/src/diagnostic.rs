@@ -86,6 +86,16 @@ impl Diagnostics {
         self.list.iter().any(|d| d.severity == Severity::Error)
     }
 
+    /// Makes errors of all warnings.
+    pub fn promote_warnings(&mut self) {
+        self.list.iter_mut().for_each(|diagnostic| diagnostic.severity = Severity::Error);
+    }
+
+    /// Leaves only errors.
+    pub fn drop_warnings(&mut self) {
+        self.list.retain(|diagnostic| diagnostic.severity == Severity::Error);
+    }
+
     /// True when there is nothing to say.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()

@@ -55,6 +55,9 @@ pub struct Options {
     pub undefines: Vec<String>,
     /// Files kept in memory, name and text, which `#include` finds when the disk has none.
     pub virtual_files: Vec<(String, String)>,
+    /// Files kept in memory, name and text, which `#include` finds before those of `include_dirs`: headers that come with the
+    /// compiler.
+    pub own_files: Vec<(String, String)>,
     /// Name and text of a file that is read before the user's: the standard header.
     pub prelude: Option<(String, String)>,
 }

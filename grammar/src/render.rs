@@ -15,6 +15,9 @@ pub enum Format {
     Full,
     /// `file:line:column: error: message`, one line each.
     Short,
+    /// One JSON object a line: `severity`, `code`, `message`, `file`, `line`, `column`, `label`, `help`, and `also`, a list of further
+    /// places with their `text`. Without a place `file` is null.
+    Json,
 }
 
 /// More notes than this about macros and includes say no more.
@@ -31,6 +34,7 @@ impl Sources {
             match format {
                 Format::Short => self.render_short(diagnostic, &mut out),
                 Format::Full => self.render_full(diagnostic, color, &mut out),
+                Format::Json => self.render_json(diagnostic, &mut out),
             }
         }
         out
@@ -45,6 +49,28 @@ impl Sources {
             Severity::Warning => "warning",
         };
         out.push_str(&format!("{severity}: {}\n", diagnostic.message.replace('\n', " ")));
+    }
+
+    fn render_json(&self, diagnostic: &Diagnostic, out: &mut String) {
+        let severity = match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let place = |span: Span| match self.locate(span) {
+            Some(at) => format!("\"file\":{},\"line\":{},\"column\":{}", json(&at.file), at.line, at.column),
+            None => "\"file\":null,\"line\":null,\"column\":null".to_owned(),
+        };
+        let also = diagnostic.secondary.iter().map(|(span, text)| format!("{{{},\"text\":{}}}", place(*span), json(text)));
+        let also: Vec<String> = also.collect();
+        out.push_str(&format!(
+            "{{\"severity\":\"{severity}\",\"code\":\"{}\",\"message\":{},{},\"label\":{},\"help\":{},\"also\":[{}]}}\n",
+            diagnostic.code,
+            json(&diagnostic.message),
+            place(diagnostic.span),
+            json(&diagnostic.label),
+            diagnostic.help.as_deref().map_or("null".to_owned(), json),
+            also.join(",")
+        ));
     }
 
     fn render_full(&self, diagnostic: &Diagnostic, color: bool, out: &mut String) {
@@ -236,4 +262,19 @@ impl<'a> Files<'a> for Sources {
         let max = file.line_starts.len().saturating_sub(1);
         file.line_range(line_index).ok_or(Error::LineTooLarge { given: line_index, max })
     }
+}
+
+/// A text as a JSON string.
+fn json(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            '\n' => out.push_str("\\n"),
+            c if c < ' ' => out.push_str(&format!("\\u{:04x}", c as u32)),
+            c => out.push(c),
+        }
+    }
+    out + "\""
 }

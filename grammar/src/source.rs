@@ -101,13 +101,15 @@ pub(crate) struct SourceTable {
     pub expanded: Vec<Expanded>,
     pub calls: Vec<MacroCall>,
     pub scratch: String,
+    /// Lines, by file and from 0, of which no warnings are wanted: those after `#pragma osl nowarn`.
+    pub quiet: Vec<(u32, usize)>,
 }
 
 impl SourceTable {
     /// A table with nothing but the scratch file.
     pub(crate) fn new() -> Self {
         let scratch = SourceFile::new("<made by macros>", Arc::from(""), None);
-        SourceTable { files: vec![scratch], expanded: Vec::new(), calls: Vec::new(), scratch: String::new() }
+        SourceTable { files: vec![scratch], expanded: Vec::new(), calls: Vec::new(), scratch: String::new(), quiet: Vec::new() }
     }
 
     /// The text of a place.
@@ -153,6 +155,20 @@ pub struct Sources {
     pub(crate) table: Arc<SourceTable>,
 }
 
+impl Sources {
+    /// The names of the files that were read, each once, in order; the first is the one that was asked for unless a header goes
+    /// before it.
+    pub fn files(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for file in self.table.files.iter().skip(1) {
+            if !names.contains(&&*file.name) {
+                names.push(&file.name);
+            }
+        }
+        names
+    }
+}
+
 impl Default for Sources {
     fn default() -> Self {
         SourceTable::new().finish()
@@ -164,6 +180,14 @@ impl Sources {
     pub fn locate(&self, span: Span) -> Option<Location> {
         let token = self.token(span.first)?;
         Some(self.location(self.table.outermost(token.place, token.call)))
+    }
+
+    /// Is a warning at this place unwanted, by `#pragma osl nowarn` on the line before?
+    pub fn is_quiet(&self, span: Span) -> bool {
+        let Some(token) = self.token(span.first) else { return false };
+        let place = self.table.outermost(token.place, token.call);
+        let line = self.table.files[place.file as usize].line(place.start);
+        self.table.quiet.contains(&(place.file, line))
     }
 
     /// The text of the tokens of a span, after macros, with one space wherever the text had any.

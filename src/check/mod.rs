@@ -23,6 +23,9 @@ mod place;
 mod rank;
 mod statement;
 pub mod typed;
+mod unused;
+
+pub use unused::unused;
 
 use crate::lang::closures::ClosureTable;
 use context::Checker;

@@ -1,10 +1,12 @@
-//! `velour check`: reports every mistake in shader files.
+//! `velour check`: reports every mistake in shader files, with the options of OSL's oslc.
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::speak::{colored, say, tell};
-use std::path::PathBuf;
-use velour_grammar::Format;
+use crate::compile::Compiler;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use velour_grammar::{Diagnostics, Format, Sources};
 
 /// How messages look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -14,60 +16,153 @@ pub enum MessageFormat {
     /// The text with the place marked
     #[default]
     Full,
+    /// One JSON object a message
+    Json,
 }
 
 /// Arguments of `velour check`.
 #[derive(clap::Args)]
 pub struct CheckArgs {
-    /// Shader files
+    /// Shader files; `-` for standard input
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// How messages look
     #[arg(long, value_enum, default_value_t)]
     message_format: MessageFormat,
+    /// Warn of what is odd though it works: variables that are never read or never written
+    #[arg(long = "Wall")]
+    all_warnings: bool,
+    /// Take warnings for errors
+    #[arg(long = "Werror")]
+    strict: bool,
+    /// Say nothing but errors
+    #[arg(short)]
+    quiet: bool,
+    /// Say what is done
+    #[arg(short)]
+    verbose: bool,
     /// Stop after the preprocessor and print its output
     #[arg(short = 'E')]
     preprocess: bool,
+    /// Where the output of -E or -M goes; shaders are compiled when they run, so there is no other
+    #[arg(short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    depend: DependArgs,
     #[command(flatten)]
     compile: CompileArgs,
+}
+
+/// Rules for make, as C compilers write them.
+#[derive(clap::Args)]
+struct DependArgs {
+    /// Print the files that a shader is made of, as a rule for make
+    #[arg(long = "M", visible_alias = "MM")]
+    only: bool,
+    /// Check, and write the rule beside the shader, its name ending with .d
+    #[arg(long = "MD", visible_alias = "MMD")]
+    beside: bool,
+    /// Write the rule to this file
+    #[arg(long = "MF", value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// The rule's target [default: the shader's name ending with .oso]
+    #[arg(long = "MT", value_name = "TARGET")]
+    target: Option<String>,
 }
 
 /// Checks the files; all of them, whatever the first ones contain.
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     let compiler = args.compile.compiler()?;
-    let format = match args.message_format {
-        MessageFormat::Short => Format::Short,
-        MessageFormat::Full => Format::Full,
-    };
     let (mut wrong, mut unreadable) = (false, false);
     for path in &args.files {
-        let name = path.display().to_string();
-        let bytes = match std::fs::read(path) {
-            Ok(bytes) => bytes,
-            Err(error) => {
-                tell(&format!("{name}: error: cannot be read: {error}\n"));
+        let (name, bytes) = match read(path) {
+            Ok(read) => read,
+            Err(message) => {
+                tell(&message);
                 unreadable = true;
                 continue;
             }
         };
-        let (diagnostics, sources) = if args.preprocess {
-            let text = String::from_utf8_lossy(&bytes);
-            let (output, diagnostics, sources) = velour_grammar::preprocess(&name, &text, &compiler.options);
-            say(&output);
-            (diagnostics, sources)
-        } else {
-            let checked = compiler.check_bytes(&name, &bytes);
-            (checked.diagnostics, checked.sources)
-        };
-        wrong |= diagnostics.has_errors();
-        let text = sources.render(&diagnostics, format, colored());
-        if !text.is_empty() {
-            tell(&format!("{}\n", text.trim_end()));
-        }
+        wrong |= !one(args, &compiler, &name, &bytes)?;
     }
     match (unreadable, wrong) {
         (true, _) => Err(Failure::Usage(String::new())),
         (_, true) => Err(Failure::Wrong(String::new())),
         _ => Ok(()),
     }
+}
+
+/// A file's name for messages and what is in it.
+fn read(path: &Path) -> Result<(String, Vec<u8>), String> {
+    let standard = path == Path::new("-");
+    let name = if standard { "<stdin>".to_owned() } else { path.display().to_string() };
+    let mut bytes = Vec::new();
+    let read = if standard {
+        std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        std::fs::read(path)
+    };
+    read.map(|bytes| (name.clone(), bytes)).map_err(|error| format!("{name}: error: cannot be read: {error}\n"))
+}
+
+/// Checks one file; true when it is right.
+fn one(args: &CheckArgs, compiler: &Compiler, name: &str, bytes: &[u8]) -> Result<bool, Failure> {
+    let right = if args.preprocess {
+        let text = String::from_utf8_lossy(bytes);
+        let (output, diagnostics, sources) = velour_grammar::preprocess(name, &text, &compiler.options);
+        put(args.output.as_deref(), &output)?;
+        report(args, diagnostics, &sources)
+    } else {
+        let checked = if args.all_warnings { compiler.check_closely(name, bytes) } else { compiler.check_bytes(name, bytes) };
+        depend(args, compiler, name, &checked.sources)?;
+        report(args, checked.diagnostics, &checked.sources)
+    };
+    if args.verbose && right {
+        say(&format!("{name}: right\n"));
+    }
+    Ok(right)
+}
+
+/// Tells the messages; true when none is an error.
+fn report(args: &CheckArgs, mut diagnostics: Diagnostics, sources: &Sources) -> bool {
+    if args.strict {
+        diagnostics.promote_warnings();
+    }
+    if args.quiet {
+        diagnostics.drop_warnings();
+    }
+    let format = match args.message_format {
+        MessageFormat::Short => Format::Short,
+        MessageFormat::Full => Format::Full,
+        MessageFormat::Json => Format::Json,
+    };
+    let text = sources.render(&diagnostics, format, colored());
+    if !text.is_empty() {
+        tell(&format!("{}\n", text.trim_end()));
+    }
+    !diagnostics.has_errors()
+}
+
+/// Writes the rule that `-M`, `-MD` or `-MF` ask for.
+fn depend(args: &CheckArgs, compiler: &Compiler, name: &str, sources: &Sources) -> Result<(), Failure> {
+    let asked = &args.depend;
+    if !(asked.only || asked.beside || asked.file.is_some()) {
+        return Ok(());
+    }
+    let own = |file: &&str| !compiler.options.own_files.iter().any(|(own, _)| own == file);
+    let files: Vec<&str> = sources.files().into_iter().filter(own).collect();
+    let target = asked.target.clone().unwrap_or_else(|| Path::new(name).with_extension("oso").display().to_string());
+    let rule = format!("{target}: {}\n", files.join(" \\\n  "));
+    let beside = asked.beside.then(|| Path::new(name).with_extension("d"));
+    let file = asked.file.clone().or(beside).or_else(|| args.output.clone());
+    put(file.as_deref(), &rule)
+}
+
+/// Writes a text to a file, or to standard output.
+fn put(file: Option<&Path>, text: &str) -> Result<(), Failure> {
+    let Some(file) = file else {
+        say(text);
+        return Ok(());
+    };
+    std::fs::write(file, text).map_err(|error| Failure::Usage(format!("{}: error: cannot be written: {error}", file.display())))
 }

@@ -2,8 +2,9 @@
 
 use super::failure::Failure;
 use super::speak::tell;
-use super::{chart, check, info, new, render, tree, verify};
-use clap::{Parser, Subcommand};
+use super::{chart, check, info, new, render, shade, tree, verify};
+use clap::{CommandFactory, Parser, Subcommand};
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// An OSL-style closure interpreter and renderer.
@@ -24,6 +25,8 @@ enum Command {
     Check(check::CheckArgs),
     /// Show the closure tree of a shader
     Tree(tree::TreeArgs),
+    /// Run shaders on a grid of points, as OSL's testshade does
+    Shade(shade::ShadeArgs),
     /// Verify that closures or shaders keep energy, sample what they say, and stay finite
     Verify(verify::VerifyArgs),
     /// Measure cost and error of every method on this machine, and draw them
@@ -34,7 +37,7 @@ enum Command {
 
 /// Runs the command line and gives the exit status: 0 done, 1 a shader or scene is wrong, 2 usage or files.
 pub fn run() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::try_parse_from(gnu_style(std::env::args_os().collect())) {
         Ok(arguments) => arguments,
         Err(error) => {
             // A pipe that closes early is no reason to complain.
@@ -47,6 +50,7 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Tree(args) => tree::run(&args),
+        Command::Shade(args) => shade::run(&args.words),
         Command::Verify(args) => verify::run(&args),
         Command::Chart(args) => chart::run(&args),
         Command::Info(args) => info::run(&args),
@@ -56,6 +60,23 @@ pub fn run() -> ExitCode {
         Err(Failure::Wrong(message)) => fail(&message, 1),
         Err(Failure::Usage(message)) => fail(&message, 2),
     }
+}
+
+/// Writes long options that begin with one dash, as OSL's tools took them, with two.
+///
+/// Whatever follows `velour shade` is left alone: that command reads its own words.
+fn gnu_style(words: Vec<OsString>) -> Vec<OsString> {
+    let command = Arguments::command();
+    let named = words.get(1).and_then(|word| word.to_str()).unwrap_or_default();
+    let Some(chosen) = command.find_subcommand(named).filter(|_| named != "shade") else { return words };
+    let longs: Vec<&str> = chosen.get_arguments().filter_map(|argument| argument.get_long()).collect();
+    let fixed = |word: OsString| match word.to_str().and_then(|text| text.strip_prefix('-')) {
+        Some(bare) if bare.len() > 1 && longs.contains(&bare.split('=').next().unwrap_or(bare)) => {
+            OsString::from(format!("--{bare}"))
+        }
+        _ => word,
+    };
+    words.into_iter().map(fixed).collect()
 }
 
 fn fail(message: &str, status: u8) -> ExitCode {

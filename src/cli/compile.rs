@@ -23,6 +23,11 @@ pub struct CompileArgs {
 }
 
 impl CompileArgs {
+    /// Folders of included files, and macros that are set and unset.
+    pub fn of(include: Vec<PathBuf>, define: Vec<String>, undefine: Vec<String>) -> Self {
+        CompileArgs { include, define, undefine, stdosl: None }
+    }
+
     /// The compiler they ask for.
     pub fn compiler(&self) -> Result<Compiler, Failure> {
         let mut compiler = Compiler::new();

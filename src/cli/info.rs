@@ -2,15 +2,15 @@
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
-use super::info_file::shader_text;
+use super::info_file::{shader_json, shader_lines, shader_text};
 use super::speak::say;
 use crate::compile::CompileError;
 use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
 use crate::lang::closures::ClosureTable;
 use crate::lang::describe::{closure_head, closure_text};
-use crate::scene::nearest;
+use crate::scene::{find_shader, nearest};
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use velour_grammar::ast::{FunctionDecl, Item};
 use velour_grammar::print::print_type;
 
@@ -19,6 +19,21 @@ use velour_grammar::print::print_type;
 pub struct InfoArgs {
     /// A closure, a function or a shader file; nothing for a list of all closures and functions
     subject: Option<String>,
+    /// Of a shader, print everything; this is what happens anyway
+    #[arg(short)]
+    verbose: bool,
+    /// Of a shader, one line a parameter: `TYPE NAME DEFAULT`
+    #[arg(long)]
+    terse: bool,
+    /// Of a shader, only this parameter
+    #[arg(long, value_name = "NAME")]
+    param: Option<String>,
+    /// Of a shader, as JSON
+    #[arg(long)]
+    json: bool,
+    /// Folders to look for shaders in
+    #[arg(short, long, value_name = "DIRS", value_delimiter = ':')]
+    path: Vec<PathBuf>,
     #[command(flatten)]
     compile: CompileArgs,
 }
@@ -32,8 +47,9 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         say(&everything(table, &header));
         return Ok(());
     };
-    if subject.ends_with(".osl") || Path::new(subject).is_file() {
-        return file(args, Path::new(subject));
+    let about_shader = args.verbose || args.terse || args.json || args.param.is_some() || !args.path.is_empty();
+    if let Some(path) = shader_file(args, subject, about_shader) {
+        return file(args, &path);
     }
     let text = one(table, &header, subject);
     if text.is_empty() {
@@ -43,12 +59,34 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The file of a shader: a path, or where it is asked for by name, its file here or in the folders of `--path`.
+fn shader_file(args: &InfoArgs, subject: &str, by_name: bool) -> Option<PathBuf> {
+    if subject.ends_with(".osl") || Path::new(subject).is_file() {
+        return Some(PathBuf::from(subject));
+    }
+    let mut folders = vec![PathBuf::from(".")];
+    folders.extend(args.path.iter().cloned());
+    find_shader(subject, &folders).filter(|_| by_name)
+}
+
 fn file(args: &InfoArgs, path: &Path) -> Result<(), Failure> {
     let shader = args.compile.compiler()?.compile_file(path).map_err(|error| match error {
         CompileError::File { .. } => Failure::Usage(error.to_string()),
         other => Failure::Wrong(other.to_string()),
     })?;
-    say(&shader_text(&shader.typed));
+    let mut shader = (*shader.typed).clone();
+    if let Some(name) = &args.param {
+        shader.params.retain(|param| shader.variables[param.var.0 as usize].name == *name);
+        if shader.params.is_empty() {
+            return Err(Failure::Wrong(format!("error: shader `{}` has no parameter `{name}`", shader.name)));
+        }
+        shader.metadata.clear();
+    }
+    say(&match (args.json, args.terse) {
+        (true, _) => shader_json(&shader),
+        (_, true) => shader_lines(&shader),
+        _ => shader_text(&shader),
+    });
     Ok(())
 }
 

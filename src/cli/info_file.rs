@@ -6,18 +6,77 @@ use velour_grammar::ast::{ShaderKind, UnaryOp};
 
 /// The declaration of a shader as text.
 pub fn shader_text(shader: &Shader) -> String {
-    let kind = match shader.kind {
-        ShaderKind::Generic => "shader",
-        ShaderKind::Surface => "surface",
-        ShaderKind::Displacement => "displacement",
-        ShaderKind::Volume => "volume",
-    };
-    let mut out = format!("{kind} \"{}\"\n", shader.name);
-    out.extend(shader.metadata.iter().map(|entry| metadata_text("    ", entry)));
+    let mut out = format!("{} \"{}\"\n", kind_of(shader), shader.name);
+    out.extend(shader.metadata.iter().map(|entry| metadata_text("\t\t", entry)));
     for param in &shader.params {
         out += &param_text(shader, param);
     }
     out
+}
+
+fn kind_of(shader: &Shader) -> &'static str {
+    match shader.kind {
+        ShaderKind::Generic => "shader",
+        ShaderKind::Surface => "surface",
+        ShaderKind::Displacement => "displacement",
+        ShaderKind::Volume => "volume",
+    }
+}
+
+/// The declaration in lines of a word each for kind and name, then for each parameter `output`, if it is one, type, name and
+/// default.
+pub fn shader_lines(shader: &Shader) -> String {
+    let mut out = format!("{} {}\n", kind_of(shader), shader.name);
+    for param in &shader.params {
+        let variable = &shader.variables[param.var.0 as usize];
+        let output = if param.output { "output " } else { "" };
+        let default = param.default.as_ref().and_then(|value| known(&variable.ty, value));
+        out += &format!("{output}{} {} {}\n", variable.ty, variable.name, default.as_deref().unwrap_or("nodefault"));
+    }
+    out
+}
+
+/// The declaration as JSON: `kind`, `name`, `metadata`, and `params` with `name`, `type`, `output`, `default` (a list of numbers and
+/// strings, or null where it is computed) and `metadata`.
+pub fn shader_json(shader: &Shader) -> String {
+    let params = shader.params.iter().map(|param| {
+        let variable = &shader.variables[param.var.0 as usize];
+        format!(
+            "\n  {{\"name\":{:?},\"type\":{:?},\"output\":{},\"default\":{},\"metadata\":{}}}",
+            variable.name,
+            variable.ty.to_string(),
+            param.output,
+            param.default.as_ref().map_or("null".to_owned(), json_value),
+            json_metadata(&param.metadata)
+        )
+    });
+    format!(
+        "{{\"kind\":\"{}\",\"name\":{:?},\"metadata\":{},\"params\":[{}]}}\n",
+        kind_of(shader),
+        shader.name,
+        json_metadata(&shader.metadata),
+        params.collect::<Vec<_>>().join(",")
+    )
+}
+
+fn json_metadata(metadata: &[Metadata]) -> String {
+    let entry = |entry: &Metadata| {
+        let (name, ty) = (&entry.name, entry.ty.to_string());
+        format!("{{\"name\":{name:?},\"type\":{ty:?},\"value\":{}}}", json_value(&entry.value))
+    };
+    format!("[{}]", metadata.iter().map(entry).collect::<Vec<_>>().join(","))
+}
+
+/// A constant as a list; JSON has no infinities, which are then null.
+fn json_value(value: &Expr) -> String {
+    let mut parts = Vec::new();
+    match constants(value, &mut parts) {
+        Some(()) => {
+            parts.iter_mut().filter(|part| ["inf", "-inf", "NaN"].contains(&part.as_str())).for_each(|part| *part = "null".into());
+            format!("[{}]", parts.join(","))
+        }
+        None => "null".to_owned(),
+    }
 }
 
 fn param_text(shader: &Shader, param: &ShaderParam) -> String {
@@ -37,6 +96,7 @@ fn param_text(shader: &Shader, param: &ShaderParam) -> String {
 
 fn metadata_text(indent: &str, entry: &Metadata) -> String {
     let value = known(&entry.ty, &entry.value).unwrap_or_else(|| "?".to_owned());
+    let value = value.trim_start_matches("[ ").trim_end_matches(" ]");
     format!("{indent}metadata: {} {} = {value}\n", entry.ty, entry.name)
 }
 

@@ -9,6 +9,7 @@ mod info;
 mod info_file;
 mod new;
 mod render;
+mod shade;
 mod speak;
 mod threads;
 mod tree;

@@ -242,7 +242,7 @@ fn pass_on(reports: &[Report]) {
         match &report.kind {
             ReportKind::Output => say(&report.text),
             ReportKind::File(_) => tell(&report.to_string()),
-            ReportKind::Warning | ReportKind::Error | ReportKind::Mistake | ReportKind::Fatal => {
+            ReportKind::Warning | ReportKind::Error | ReportKind::Mistake(_) | ReportKind::Fatal => {
                 tell(&format!("{report}\n"));
             }
         }

@@ -63,7 +63,7 @@ pub fn run(args: &TreeArgs) -> Result<(), Failure> {
         match &report.kind {
             ReportKind::Output => say(&report.text),
             ReportKind::File(_) => tell(&report.to_string()),
-            ReportKind::Warning | ReportKind::Error | ReportKind::Mistake => tell(&format!("{report}\n")),
+            ReportKind::Warning | ReportKind::Error | ReportKind::Mistake(_) => tell(&format!("{report}\n")),
             ReportKind::Fatal => return Err(Failure::Wrong(report.to_string())),
         }
     }

@@ -38,7 +38,7 @@ impl GroupBuilder {
     /// Adds a layer after the others.
     pub fn layer(mut self, name: &str, shader: &Shader) -> Self {
         let (shader, sources) = (shader.typed.clone(), shader.sources.clone());
-        self.layers.push(Layer { name: name.to_owned(), shader, bindings: Vec::new() });
+        self.layers.push(Layer { name: name.to_owned(), shader, bindings: Vec::new(), interpolated: Vec::new() });
         self.sources.push(sources);
         self
     }
@@ -127,6 +127,14 @@ impl GroupBuilder {
         self
     }
 
+    /// Lets userdata of its name go before the value of a parameter of the last layer, or not, whatever its shader says.
+    pub fn interpolate(mut self, name: &str, interpolated: bool) -> Self {
+        if let Some(layer) = self.layers.last_mut() {
+            layer.interpolated.push((name.to_owned(), interpolated));
+        }
+        self
+    }
+
     /// Compiles without folding, dead-code removal, uniform values and fused operations. For tests and comparisons.
     pub fn unoptimized(mut self) -> Self {
         self.lower.simplify = false;
@@ -167,6 +175,7 @@ fn locator(sources: Vec<Sources>, names: Vec<(String, String)>) -> Locate {
         let (shader, layer_name) = names.get(layer).cloned().unwrap_or_default();
         let place = sources.get(layer).and_then(|s| s.locate(Span { first, last: first }));
         let (file, line, column) = place.map_or(("shader".to_owned(), 0, 0), |p| (p.file, p.line, p.column));
-        ReportPlace { shader, layer: layer_name, file, line, column }
+        let word = sources.get(layer).map_or(String::new(), |s| s.text(Span { first, last: first }));
+        ReportPlace { shader, layer: layer_name, layer_number: layer, file, line, column, word }
     })
 }

@@ -6,13 +6,26 @@ use crate::check::check;
 use crate::closure::Library;
 use std::path::Path;
 use std::sync::Arc;
-use velour_grammar::{Diagnostics, Options, Sources, parse, parse_bytes};
+use velour_grammar::{Diagnostics, Options, Severity, Sources, parse, parse_bytes};
 
 /// The standard header, kept in the binary so that nothing has to be installed.
 pub const STDOSL: &str = include_str!("../../shaders/stdosl.osl");
 
 /// The name under which messages speak of the built-in header.
 const STDOSL_NAME: &str = "stdosl.osl";
+
+/// The headers that come with velour, by the names OSL gives them. The standard one is always read first, so including it again
+/// adds nothing.
+const HEADERS: &[(&str, &str)] = &[
+    ("stdosl.h", ""),
+    (STDOSL_NAME, ""),
+    ("vector2.h", include_str!("../../shaders/headers/vector2.h")),
+    ("vector4.h", include_str!("../../shaders/headers/vector4.h")),
+    ("color2.h", include_str!("../../shaders/headers/color2.h")),
+    ("color4.h", include_str!("../../shaders/headers/color4.h")),
+    ("matrix33.h", include_str!("../../shaders/headers/matrix33.h")),
+    ("oslutil.h", include_str!("../../shaders/headers/oslutil.h")),
+];
 
 /// What all shaders of a session share.
 #[derive(Clone, Debug)]
@@ -34,6 +47,14 @@ pub struct Checked {
     pub sources: Sources,
 }
 
+impl Checked {
+    /// Drops the warnings that the text has asked to be left out.
+    fn drop_quiet(&mut self) {
+        let sources = &self.sources;
+        self.diagnostics.list.retain(|d| d.severity == Severity::Error || !sources.is_quiet(d.span));
+    }
+}
+
 impl Default for Compiler {
     fn default() -> Self {
         Self::new()
@@ -44,8 +65,7 @@ impl Compiler {
     /// A compiler with the built-in header and the standard closures.
     pub fn new() -> Self {
         let options = Options {
-            // The header is always read first, so including it again adds nothing.
-            virtual_files: vec![("stdosl.h".to_owned(), String::new()), (STDOSL_NAME.to_owned(), String::new())],
+            own_files: HEADERS.iter().map(|&(name, text)| (name.to_owned(), text.to_owned())).collect(),
             prelude: Some((STDOSL_NAME.to_owned(), STDOSL.to_owned())),
             ..Options::default()
         };
@@ -74,6 +94,21 @@ impl Compiler {
         self.finish(parse_bytes(name, bytes, &self.options))
     }
 
+    /// The same, with warnings of what works and is odd: variables that nothing reads, or nothing writes.
+    pub fn check_closely(&self, name: &str, bytes: &[u8]) -> Checked {
+        let parsed = parse_bytes(name, bytes, &self.options);
+        let prelude = self.options.prelude.as_ref().map_or("", |(name, _)| name.as_str());
+        let mut checked = self.finish(parsed);
+        if let Some(shader) = &checked.shader {
+            let mut more = crate::check::unused(&shader.typed);
+            let sources = &checked.sources;
+            more.list.retain(|d| sources.locate(d.span).is_some_and(|at| at.file != prelude));
+            checked.diagnostics.append(more);
+            checked.drop_quiet();
+        }
+        checked
+    }
+
     fn finish(&self, parsed: velour_grammar::Parsed) -> Checked {
         let mut diagnostics = parsed.diagnostics;
         let mut shader = None;
@@ -87,7 +122,9 @@ impl Compiler {
                 closures: self.closures.clone(),
             });
         }
-        Checked { shader, diagnostics, sources: parsed.sources }
+        let mut checked = Checked { shader, diagnostics, sources: parsed.sources };
+        checked.drop_quiet();
+        checked
     }
 
     /// Compiles a text to a shader.

@@ -1,5 +1,6 @@
 //! Array elements chosen at run time, one index a lane.
 
+use super::report::Mistake;
 use super::run::Run;
 use crate::ir::program::*;
 use velour_grammar::Span;
@@ -17,7 +18,7 @@ impl Run<'_> {
                 Some(last) => format!("index {wanted} is outside 0..{last}"),
                 None => format!("index {wanted} is outside an array without elements"),
             };
-            self.report_once(lane, span, message);
+            self.report_once(lane, span, Mistake::Index { index: wanted, len }, message);
         }
         (wanted.max(0) as usize).min(len.saturating_sub(1) as usize)
     }

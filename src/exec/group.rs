@@ -99,6 +99,20 @@ impl Group {
         &self.inputs
     }
 
+    /// How many numbers an output has and whether they are ints; nothing for one that the group does not keep, for strings and
+    /// for closures. Names are those of [`super::Machine::output`].
+    pub fn output_shape(&self, name: &str) -> Option<(usize, bool)> {
+        let output = self.program.output(name)?;
+        let (kind, count) = match &output.value {
+            OutputValue::Regs(regs) => (self.program.kind(*regs.first()?), regs.len()),
+            OutputValue::Array(array) => {
+                let info = &self.program.arrays[array.0 as usize];
+                (info.kind, (info.len * info.components) as usize)
+            }
+        };
+        matches!(kind, Kind::Float | Kind::Int).then_some((count, kind == Kind::Int))
+    }
+
     /// Is the register read by nothing but a move of floats that follows it in its block? The move may take its column, which the
     /// next run of the block writes anew before it is read.
     pub(super) fn spent(&self, reg: Reg) -> bool {

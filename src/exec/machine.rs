@@ -106,10 +106,7 @@ impl Machine {
     /// those that it was built to keep.
     pub fn output<'m>(&'m self, group: &'m Group, name: &str) -> Option<OutputView<'m>> {
         let regs = self.files.get(&group.id)?;
-        let named = |layer: &str, own: &str| {
-            own == name || name.strip_prefix(layer).is_some_and(|rest| rest.strip_prefix('.') == Some(own))
-        };
-        let output = group.program.outputs.iter().rev().find(|output| named(&output.layer, &output.name))?;
+        let output = group.program.output(name)?;
         Some(OutputView { output, program: &group.program, regs, tree: &self.tree })
     }
 

@@ -44,4 +44,4 @@ pub use host::{Attribute, AttributeAnswer, AttributeRequest, Host, PlainHost, bu
 pub use machine::{DEFAULT_BUDGET, Machine};
 pub use output::{OutputView, Values};
 pub use points::{MAX_LANES, Points, RAY_TYPES};
-pub use report::{Report, ReportKind, ReportPlace};
+pub use report::{Mistake, Report, ReportKind, ReportPlace};

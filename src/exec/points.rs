@@ -68,6 +68,8 @@ pub struct Points {
     pub ray_type: Vec<i32>,
     /// `backfacing()`
     pub backfacing: Vec<i32>,
+    /// A number of each point, for hosts that answer `"shading:index"`.
+    pub index: Vec<i32>,
 }
 
 impl Points {
@@ -121,6 +123,7 @@ impl Points {
         floats.into_iter().for_each(|column| column.resize(len, 0.0));
         self.ray_type.resize(len, 0);
         self.backfacing.resize(len, 0);
+        self.index.resize(len, 0);
     }
 
     /// The column of a float input, or nothing when it is zero everywhere.

@@ -2,6 +2,7 @@
 
 use super::host::{AttributeAnswer, AttributeRequest, between};
 use super::lane::Lane;
+use super::report::Mistake;
 use super::run::Run;
 use crate::ir::op::AttributeQuery;
 use crate::ir::program::{Kind, Reg};
@@ -28,9 +29,10 @@ impl Run<'_> {
             // Of a space to itself without asking, as the compiler has it where it knows both names.
             let found = if from == to { Some(IDENTITY) } else { between(self.space(from), self.space(to)) };
             if found.is_none() && !self.idle(lane, lanes) {
-                let [from, to] = [from, to].map(|symbol| self.tree.strings.text(Symbol(symbol)));
-                let message = format!("there is no space \"{from}\" or no space \"{to}\"");
-                self.report_once(lane, span, message);
+                let unknown = if self.space(from).is_none() { from } else { to };
+                let name = self.tree.strings.text(Symbol(unknown)).to_owned();
+                let message = format!("there is no space \"{name}\"");
+                self.report_once(lane, span, Mistake::Space { name }, message);
             }
             for (reg, value) in dst.iter().zip(found.unwrap_or(IDENTITY)) {
                 self.regs.floats[reg.0 as usize][lane] = value;

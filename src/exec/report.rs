@@ -28,9 +28,36 @@ pub enum ReportKind {
     /// `error`
     Error,
     /// A mistake that shading survives, such as an index outside its array.
-    Mistake,
+    Mistake(Mistake),
     /// The shader cannot be run: the host should stop.
     Fatal,
+}
+
+/// What a mistake is, in parts, for a host that words it itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Mistake {
+    /// An index outside an array or a value of components; the nearest element was taken.
+    Index {
+        /// The index.
+        index: i32,
+        /// How many elements there are.
+        len: u32,
+    },
+    /// A space that the host does not know.
+    Space {
+        /// Its name.
+        name: String,
+    },
+    /// A change of color spaces that there is not.
+    ColorSpace {
+        /// The space of the color.
+        from: String,
+        /// The space that was asked for.
+        to: String,
+    },
+    /// Anything else; the text says it.
+    Other,
 }
 
 /// A place in a shader's text.
@@ -40,18 +67,22 @@ pub struct ReportPlace {
     pub shader: String,
     /// The name of its layer in the group.
     pub layer: String,
+    /// The number of the layer, from 0 on.
+    pub layer_number: usize,
     /// The file, or the name that its text was given.
     pub file: String,
     /// The line, from 1 on; 0 where it is not known.
     pub line: u32,
     /// The column, from 1 on.
     pub column: u32,
+    /// The word that stands there, such as the name of the array that is indexed.
+    pub word: String,
 }
 
 impl Report {
     /// A mistake that no single lane has made, at a place.
     pub fn mistake(place: ReportPlace, text: String) -> Self {
-        Report { kind: ReportKind::Mistake, place: Arc::new(place), lane: 0, text }
+        Report { kind: ReportKind::Mistake(Mistake::Other), place: Arc::new(place), lane: 0, text }
     }
 
     /// A warning that no single lane gives, at a place.
@@ -67,7 +98,7 @@ impl Report {
     /// True when it says that something is wrong, not what a shader printed or warns of.
     pub fn is_wrong(&self) -> bool {
         match self.kind {
-            ReportKind::Error | ReportKind::Mistake | ReportKind::Fatal => true,
+            ReportKind::Error | ReportKind::Mistake(_) | ReportKind::Fatal => true,
             ReportKind::Output | ReportKind::File(_) | ReportKind::Warning => false,
         }
     }
@@ -81,7 +112,7 @@ impl Report {
     /// order of their kinds.
     pub fn key(&self) -> String {
         let kind = match &self.kind {
-            ReportKind::Error | ReportKind::Mistake => "Error",
+            ReportKind::Error | ReportKind::Mistake(_) => "Error",
             ReportKind::Fatal => "Fatal",
             ReportKind::File(_) => "File",
             ReportKind::Output => "Output",
@@ -108,7 +139,7 @@ impl fmt::Display for Report {
             ReportKind::Output => f.write_str(text),
             ReportKind::File(name) => write!(f, "{name}: {text}"),
             ReportKind::Warning | ReportKind::Error => write!(f, "{place}{colon}{text}"),
-            ReportKind::Mistake | ReportKind::Fatal => write!(f, "{place}{colon}error: {text}"),
+            ReportKind::Mistake(_) | ReportKind::Fatal => write!(f, "{place}{colon}error: {text}"),
         }
     }
 }

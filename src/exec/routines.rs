@@ -1,6 +1,7 @@
 //! Routines: work that is more than arithmetic, lane by lane.
 
 use super::lane::Lane;
+use super::report::Mistake;
 use super::run::Run;
 use super::smooth;
 use crate::ir::op::*;
@@ -144,7 +145,8 @@ impl Run<'_> {
                 _ if self.idle(lane, lanes) => color,
                 _ => {
                     let message = format!("there is no color space \"{from}\" or no \"{to}\"");
-                    self.report_once(lane, span, message);
+                    let mistake = Mistake::ColorSpace { from: from.to_owned(), to: to.to_owned() };
+                    self.report_once(lane, span, mistake, message);
                     color
                 }
             };

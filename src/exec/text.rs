@@ -1,6 +1,6 @@
 //! Printing and formatting, lane by lane. What a batch prints comes out in lane order, whatever the order of execution.
 
-use super::report::{Report, ReportKind, ReportPlace};
+use super::report::{Mistake, Report, ReportKind, ReportPlace};
 use super::run::Run;
 use crate::closure::print::closure_text;
 use crate::ir::op::{PrintTo, TextArg, TextFormat};
@@ -125,12 +125,12 @@ impl Run<'_> {
     }
 
     /// Reports a mistake that shading survives, once a batch, among what its lane prints.
-    pub(super) fn report_once(&mut self, lane: usize, span: Span, text: String) {
-        let mistake = (span, text);
-        if !self.s.said.contains(&mistake) {
-            let (kind, place, text) = (ReportKind::Mistake, self.place(span), mistake.1.clone());
+    pub(super) fn report_once(&mut self, lane: usize, span: Span, mistake: Mistake, text: String) {
+        let known = (span, text);
+        if !self.s.said.contains(&known) {
+            let (kind, place, text) = (ReportKind::Mistake(mistake), self.place(span), known.1.clone());
             self.say(Report { kind, place, lane, text });
-            self.s.said.push(mistake);
+            self.s.said.push(known);
         }
     }
 

@@ -237,6 +237,21 @@ pub struct Program {
 }
 
 impl Program {
+    /// An output by its name, `name` or `layer.name`; of several layers' the last one's.
+    pub fn output(&self, name: &str) -> Option<&Output> {
+        let named = |layer: &str, own: &str| {
+            own == name || name.strip_prefix(layer).is_some_and(|rest| rest.strip_prefix('.') == Some(own))
+        };
+        self.outputs.iter().rev().find(|output| named(&output.layer, &output.name))
+    }
+
+    /// How many instructions there are, whether or not they run.
+    pub fn instructions(&self) -> usize {
+        let mut count = 0;
+        visit_instrs(&self.body, &mut |_| count += 1);
+        count
+    }
+
     /// A new register that code writes.
     pub fn reg(&mut self, kind: Kind, mutable: bool) -> Reg {
         self.regs.push(RegInfo { kind, source: Source::Code, mutable, uniform: false });

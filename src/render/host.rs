@@ -5,6 +5,7 @@ use crate::exec::{Attribute, PlainHost};
 use crate::ops::matrix::Matrix;
 use crate::scene::Camera;
 use glam::Vec3;
+use std::collections::HashMap;
 
 /// The version of the language, as `OSL_VERSION` gives it.
 const LANGUAGE_VERSION: i32 = 11600;
@@ -18,23 +19,30 @@ const CLIP: [f32; 2] = [0.1, 1000.0];
 pub fn host(camera: &Camera, settings: &Settings) -> PlainHost {
     let mut host = PlainHost::default();
     host.spaces.insert("camera".to_owned(), camera_to_common(camera));
-    let aspect = settings.width as f32 / settings.height as f32;
+    let attributes = camera_attributes([settings.width, settings.height], camera.fov, CLIP, [0.0; 2]);
+    host.attributes.extend(attributes);
+    host
+}
+
+/// What every renderer answers of its camera: a picture of so many pixels, the angle in degrees, what is between two planes, and
+/// when the shutter opens and closes.
+pub fn camera_attributes(res: [u32; 2], fov: f32, clip: [f32; 2], shutter: [f32; 2]) -> HashMap<String, Attribute> {
+    let aspect = res[0] as f32 / res[1] as f32;
     let attributes = [
         ("osl:version", Attribute::Ints(vec![LANGUAGE_VERSION])),
-        ("camera:resolution", Attribute::Ints(vec![settings.width as i32, settings.height as i32])),
+        ("camera:resolution", Attribute::Ints(res.iter().map(|&side| side as i32).collect())),
         ("camera:projection", Attribute::Strings(vec!["perspective".to_owned()])),
         ("camera:pixelaspect", Attribute::Floats(vec![1.0])),
         ("camera:screen_window", Attribute::Floats(vec![-aspect, -1.0, aspect, 1.0])),
-        ("camera:fov", Attribute::Floats(vec![camera.fov])),
-        ("camera:clip", Attribute::Floats(CLIP.to_vec())),
-        ("camera:clip_near", Attribute::Floats(vec![CLIP[0]])),
-        ("camera:clip_far", Attribute::Floats(vec![CLIP[1]])),
-        ("camera:shutter", Attribute::Floats(vec![0.0, 0.0])),
-        ("camera:shutter_open", Attribute::Floats(vec![0.0])),
-        ("camera:shutter_close", Attribute::Floats(vec![0.0])),
+        ("camera:fov", Attribute::Floats(vec![fov])),
+        ("camera:clip", Attribute::Floats(clip.to_vec())),
+        ("camera:clip_near", Attribute::Floats(vec![clip[0]])),
+        ("camera:clip_far", Attribute::Floats(vec![clip[1]])),
+        ("camera:shutter", Attribute::Floats(shutter.to_vec())),
+        ("camera:shutter_open", Attribute::Floats(vec![shutter[0]])),
+        ("camera:shutter_close", Attribute::Floats(vec![shutter[1]])),
     ];
-    host.attributes.extend(attributes.map(|(name, value)| (name.to_owned(), value)));
-    host
+    attributes.map(|(name, value)| (name.to_owned(), value)).into()
 }
 
 /// Rows are the axes and the origin of camera space, in the world.

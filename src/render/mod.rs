@@ -73,6 +73,7 @@ mod world;
 
 pub use error::{OutputError, RenderError, SettingsError};
 pub use explain::{Explanation, MaterialNeeds, Saving};
+pub use host::camera_attributes;
 pub use image::{About, Image};
 pub use plan::{MaterialPlan, Needs, Plan};
 pub use progress::{Progress, Silent};

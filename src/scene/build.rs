@@ -5,7 +5,7 @@ use super::error::{Place, SceneError, SceneProblem};
 use super::extent;
 use super::flakes::Flakes;
 use super::geometry::{Geometry, Shape};
-use super::group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
+use super::group::{Connection, GroupCompiler, GroupSpec, Hints, Layer, ParamType, ParamValue, Usage, Values};
 use super::mesh::{Added, MaterialNames, MeshFile, add_mesh};
 use super::nearest::nearest;
 use super::placement::Placement;
@@ -403,7 +403,7 @@ fn group_child(
 
 /// `int 3`, `float .5`, `color 1 2 3` and so on; anything else is a string, as testrender reads it.
 fn parameter_value(name: &str, text: &str, place: Place) -> ParamValue {
-    let plain = |kind, values| ParamValue { kind, array: None, name: name.to_owned(), values, place: place.clone() };
+    let plain = |kind, values| ParamValue { kind, array: None, name: name.to_owned(), values, hints: Hints::default(), place: place.clone() };
     let (word, rest) = text.split_once(' ').unwrap_or(("", text));
     let number = rest.trim();
     if word == "int"

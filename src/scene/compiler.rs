@@ -68,7 +68,7 @@ impl ShaderFiles {
         if let Some(shader) = self.memory.get(&layer.shader) {
             return Ok(shader.clone());
         }
-        let compiled = if let Some(path) = find(&layer.shader, search) {
+        let compiled = if let Some(path) = find_shader(&layer.shader, search) {
             self.once(&path, || self.compiler.compile_file(&path))
         } else if let Some((file, text)) = shipped(&layer.shader) {
             self.once(Path::new(file), || self.compiler.compile(file, text))
@@ -100,12 +100,34 @@ impl ShaderFiles {
     }
 }
 
-/// The file of a shader: `name.osl` or `name` in one of the folders, or `name` as a path.
-fn find(name: &str, search: &[PathBuf]) -> Option<PathBuf> {
+/// The file of a shader: `name.osl` or `name` in one of the folders, or `name` as a path; else a file of one of the folders that
+/// declares a shader of this name, the first by its own.
+pub fn find_shader(name: &str, search: &[PathBuf]) -> Option<PathBuf> {
     let name = name.strip_suffix(".oso").unwrap_or(name);
     let with_extension = if name.ends_with(".osl") { name.to_owned() } else { format!("{name}.osl") };
     let candidates = search.iter().map(|folder| within(folder, &with_extension));
-    candidates.chain([PathBuf::from(&with_extension)]).find(|path: &PathBuf| Path::is_file(path))
+    let named = candidates.chain([PathBuf::from(&with_extension)]).find(|path: &PathBuf| Path::is_file(path));
+    named.or_else(|| search.iter().find_map(|folder| declares_in(folder, name)))
+}
+
+/// The first file of a folder, in the order of names, whose text declares the shader.
+fn declares_in(folder: &Path, name: &str) -> Option<PathBuf> {
+    let entries = std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path());
+    let mut files: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|e| e == "osl")).collect();
+    files.sort();
+    files.into_iter().find(|path| std::fs::read(path).is_ok_and(|bytes| declares(&String::from_utf8_lossy(&bytes), name)))
+}
+
+/// Does a text say `shader NAME`, or another kind of shader, in words that follow each other?
+fn declares(text: &str, name: &str) -> bool {
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    let kinds = ["shader", "surface", "displacement", "volume"];
+    text.match_indices(name).any(|(at, _)| {
+        let (before, after) = (&text[..at], &text[at + name.len()..]);
+        let kind = before.trim_end().rsplit(|c| !word(c)).next().unwrap_or_default();
+        let apart = before.ends_with(char::is_whitespace) && !after.starts_with(word);
+        apart && kinds.contains(&kind)
+    })
 }
 
 /// True when a shader has the parameter that a path leads into.
@@ -120,6 +142,16 @@ impl GroupCompiler for ShaderFiles {
     }
 
     fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
+        self.finish(self.builder(spec)?, spec)
+    }
+}
+
+impl ShaderFiles {
+    /// The group as a builder, for a host that has more to say of it; [`ShaderFiles::finish`] makes the group.
+    ///
+    /// # Errors
+    /// A shader that is not found or wrong.
+    pub fn builder(&self, spec: &GroupSpec) -> Result<GroupBuilder, SceneError> {
         let mut builder = GroupBuilder::new(self.compiler.closures.clone());
         for layer in &spec.layers {
             let shader = self.shader(layer, &spec.search)?;
@@ -135,11 +167,22 @@ impl GroupCompiler for ShaderFiles {
                     Values::Strings(values) => Binding::Strings(values.clone()),
                 };
                 builder = builder.bind_as(&param.name, binding, &written(param));
+                if let Some(interpolated) = param.hints.interpolated {
+                    builder = builder.interpolate(&param.name, interpolated);
+                }
             }
         }
         for c in &spec.connections {
             builder = builder.connect((&c.source_layer, &c.source_param), (&c.target_layer, &c.target_param));
         }
+        Ok(builder)
+    }
+
+    /// The group of a builder.
+    ///
+    /// # Errors
+    /// A parameter or a connection that does not fit, at its place in the text.
+    pub fn finish(&self, builder: GroupBuilder, spec: &GroupSpec) -> Result<Group, SceneError> {
         builder.build().map_err(|error| placed(error, spec))
     }
 }

@@ -61,6 +61,11 @@ impl ParamType {
         Self::NAMES.iter().position(|n| *n == name).map(|i| all[i])
     }
 
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
     /// How many numbers (or strings) one value of this type has.
     pub fn components(self) -> usize {
         match self {
@@ -81,8 +86,16 @@ pub enum Values {
     Strings(Vec<String>),
 }
 
-/// One parameter value of a layer. Hints after a value (`[[int lockgeom=0]]`, `interpolated`, `interactive`) are
-/// accepted and have no effect here: geometry carries no values for parameters, and every group is compiled anew.
+/// What is written after a value: `[[int lockgeom=0]]`, `interpolated`, `interactive`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Hints {
+    /// Whether userdata of the parameter's name goes before the value, where that is said.
+    pub interpolated: Option<bool>,
+    /// The value may change after the group is built; nothing depends on it here, as groups are compiled anew.
+    pub interactive: bool,
+}
+
+/// One parameter value of a layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParamValue {
     /// The type as written.
@@ -93,6 +106,8 @@ pub struct ParamValue {
     pub name: String,
     /// The values.
     pub values: Values,
+    /// What is written after them.
+    pub hints: Hints,
     /// Where the name is written.
     pub place: Place,
 }
@@ -153,4 +168,41 @@ pub trait GroupCompiler {
     fn take_warnings(&self) -> Vec<String> {
         Vec::new()
     }
+}
+
+impl GroupSpec {
+    /// The group as text that [`super::parse_group`] reads: parameters, shaders and connections, in the form of OSL's serialised
+    /// groups.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        for layer in &self.layers {
+            layer.params.iter().for_each(|param| out += &param.text());
+            out += &format!("shader {} {} ;\n", layer.shader, layer.layer_name);
+        }
+        for c in &self.connections {
+            out += &format!("connect {}.{} {}.{} ;\n", c.source_layer, c.source_param, c.target_layer, c.target_param);
+        }
+        out
+    }
+}
+
+impl ParamValue {
+    fn text(&self) -> String {
+        let array = self.array.map_or(String::new(), |length| format!("[{length}]"));
+        let values: Vec<String> = match &self.values {
+            Values::Floats(values) => values.iter().map(f32::to_string).collect(),
+            Values::Ints(values) => values.iter().map(i32::to_string).collect(),
+            Values::Strings(values) => values.iter().map(|text| quoted(text)).collect(),
+        };
+        let mut hints = Vec::new();
+        hints.extend(self.hints.interpolated.map(|yes| format!("int interpolated={}", i32::from(yes))));
+        hints.extend(self.hints.interactive.then(|| "int interactive=1".to_owned()));
+        let hints = if hints.is_empty() { String::new() } else { format!(" [[{}]]", hints.join(", ")) };
+        format!("param {}{array} {} {}{hints} ;\n", self.kind.name(), self.name, values.join(" "))
+    }
+}
+
+fn quoted(text: &str) -> String {
+    let escaped = text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n").replace('\t', "\\t").replace('\r', "\\r");
+    format!("\"{escaped}\"")
 }

@@ -27,10 +27,10 @@ mod weave;
 mod xml;
 
 pub use camera::{Camera, CameraFlaw};
-pub use compiler::ShaderFiles;
+pub use compiler::{ShaderFiles, find_shader};
 pub use error::{MeshFlaw, Place, SceneError, SceneProblem};
 pub use geometry::{Geometry, Object, Primitive, Shape};
-pub use group::{Connection, GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
+pub use group::{Connection, GroupCompiler, GroupSpec, Hints, Layer, ParamType, ParamValue, Usage, Values};
 pub use nearest::nearest;
 pub use obj::{Attribute as MeshAttribute, LineFlaw};
 pub use scene::{Background, Material, Options, Scene};

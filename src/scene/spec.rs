@@ -1,7 +1,7 @@
 //! Parses a shader group's text: `param`, `shader` and `connect` statements, quotes optional, ended by `;` or `,`.
 
 use super::error::{Place, SceneError, SceneProblem};
-use super::group::{Connection, Layer, ParamType, ParamValue, Values};
+use super::group::{Connection, Hints, Layer, ParamType, ParamValue, Values};
 use super::nearest::nearest;
 
 /// What a group's text holds.
@@ -200,8 +200,8 @@ impl<'t> Parser<'t> {
             return Err(SceneError::at(place, SceneProblem::NameMissing { what: "a parameter's name".to_owned() }));
         }
         let (values, array) = self.values(kind, array)?;
-        self.hints()?;
-        self.out.pending.push(ParamValue { kind, array, name, values, place });
+        let hints = self.hints()?;
+        self.out.pending.push(ParamValue { kind, array, name, values, hints, place });
         self.end_of_statement()
     }
 
@@ -305,11 +305,12 @@ impl<'t> Parser<'t> {
         Ok(out)
     }
 
-    /// `[[ int lockgeom = 0, … ]]`, or nothing. Read so that scenes of other renderers load; hints have no effect here.
-    fn hints(&mut self) -> Result<(), SceneError> {
+    /// `[[ int lockgeom = 0, … ]]`, or nothing.
+    fn hints(&mut self) -> Result<Hints, SceneError> {
+        let mut hints = Hints::default();
         self.skip_space();
         if !self.rest().starts_with("[[") {
-            return Ok(());
+            return Ok(hints);
         }
         self.at += 2;
         loop {
@@ -323,8 +324,13 @@ impl<'t> Parser<'t> {
             }
             let value =
                 if self.take_char('=') { self.until(&[' ', ',', ']', ';', '\n']).parse::<i32>().ok() } else { None };
-            if value.is_none() {
+            let Some(value) = value else {
                 return Err(SceneError::at(place, SceneProblem::HintWithoutValue { hint: name.to_owned() }));
+            };
+            match name {
+                "lockgeom" => hints.interpolated = Some(value == 0),
+                "interpolated" => hints.interpolated = Some(value != 0),
+                _ => hints.interactive = value != 0,
             }
             if !self.take_char(',') {
                 break;
@@ -333,6 +339,6 @@ impl<'t> Parser<'t> {
         if !(self.take_char(']') && self.take_char(']')) {
             return Err(SceneError::at(self.here(), SceneProblem::OpenHints));
         }
-        Ok(())
+        Ok(hints)
     }
 }

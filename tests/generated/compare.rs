@@ -54,7 +54,7 @@ fn seen(group: &Group, width: usize) -> Seen {
             match report.kind {
                 ReportKind::Output => seen.printed.push(report.text),
                 // What is said once a batch depends on the width by design.
-                ReportKind::Error | ReportKind::Mistake | ReportKind::Warning | ReportKind::File(_) => {}
+                ReportKind::Error | ReportKind::Mistake(_) | ReportKind::Warning | ReportKind::File(_) => {}
                 ReportKind::Fatal => panic!("{report}"),
             }
         }

@@ -132,12 +132,17 @@ impl Preprocessor<'_> {
         self.diagnostics.push(Diagnostic::warning("W0101", span, format!("#warning {text}").trim_end()));
     }
 
-    /// `#pragma once`, `#pragma error "…"`, `#pragma warning "…"`; all others are none of our business.
+    /// `#pragma once`, `#pragma error "…"`, `#pragma warning "…"`, `#pragma osl nowarn`; all others are none of our business.
     fn pragma(&mut self, arguments: &[PpToken]) {
         if let Some((word, rest)) = arguments.split_first() {
             match self.text(*word) {
                 "error" => return self.stop_directive(*word, rest),
                 "warning" => return self.warning_directive(*word, rest),
+                "osl" if rest.first().is_some_and(|t| self.text(*t) == "nowarn") => {
+                    let line = self.table.files[word.place.file as usize].line(word.place.start);
+                    self.table.quiet.push((word.place.file, line + 1));
+                    return;
+                }
                 _ => {}
             }
         }

@@ -90,11 +90,17 @@ impl Preprocessor<'_> {
         result
     }
 
-    /// Looks through the folders, then through the virtual files.
+    /// Looks through the folders, then through the virtual files. A header that comes with the compiler is the compiler's own,
+    /// whatever the folders have. As OSL does, the folder of the main file serves for all includes, in quotes or not.
     fn search(&self, wanted: &str, quoted: bool) -> Found {
+        if let Some((name, text)) = self.options.own_files.iter().find(|(name, _)| is_named(wanted, name)) {
+            return Found::Text(name.clone(), text.clone());
+        }
         let here = self.inputs.last().and_then(|i| i.folder.clone()).filter(|_| quoted);
+        let main = self.main_folder();
         let mut looked = Vec::new();
-        for folder in here.iter().chain(&self.options.include_dirs) {
+        let beside = here.iter().chain(main.iter().filter(|main| here.as_ref() != Some(*main)));
+        for folder in beside.chain(&self.options.include_dirs) {
             let path = folder.join(wanted);
             match std::fs::read(&path) {
                 Ok(bytes) => {
@@ -114,6 +120,13 @@ impl Preprocessor<'_> {
             Some((name, text)) => Found::Text(name.clone(), text.clone()),
             None => Found::Nothing(looked),
         }
+    }
+
+    /// The folder of the first file that is not the prelude.
+    fn main_folder(&self) -> Option<PathBuf> {
+        let prelude = self.options.prelude.as_ref().map(|(name, _)| name.as_str());
+        let main = self.inputs.iter().find(|input| Some(&*self.table.files[input.file as usize].name) != prelude);
+        main.and_then(|input| input.folder.clone())
     }
 
     /// A file that the caller keeps in memory, by its name or by its name beside the current one.
@@ -142,6 +155,11 @@ impl Preprocessor<'_> {
         self.diagnostics
             .push(Diagnostic::error("E0103", span, format!("cannot find {wanted}")).label("not found").help(help));
     }
+}
+
+/// Is a file of this name, with or without folders before it, asked for?
+fn is_named(wanted: &str, name: &str) -> bool {
+    wanted.strip_suffix(name).is_some_and(|folders| folders.is_empty() || folders.ends_with('/'))
 }
 
 /// A folder's name for people: the current folder has an empty one.

@@ -2,8 +2,9 @@
 
 use super::state::{Bound, Frame, Lower};
 use super::value::{Value, kind_of, zero_of};
-use crate::check::typed::{Shader, ShaderParam, VarId};
+use crate::check::typed::{ExprKind, Shader, ShaderParam, VarId};
 use crate::ir::build::Builder;
+use crate::ir::op::{AttributeQuery, AttributeType, Routine};
 use crate::ir::program::*;
 use crate::lang::globals::Global;
 use crate::lang::path::{Step, part, root, steps};
@@ -32,6 +33,8 @@ pub struct Layer {
     pub shader: Arc<Shader>,
     /// Parameters that are given, by name (with `.field` or `[i]` for a part).
     pub bindings: Vec<(String, Binding)>,
+    /// Parameters by name of which it is said whether userdata of their name goes first; of others their shader says it.
+    pub interpolated: Vec<(String, bool)>,
 }
 
 /// What to lower for.
@@ -118,10 +121,38 @@ impl Lower<'_> {
         if layer.bindings.iter().any(|(target, b)| root(target) == name && matches!(b, Binding::Connection(..))) {
             self.connected.push(var);
         }
+        let value = if self.interpolated(param, layer) { self.userdata(&name, value) } else { value };
         self.bind(var, value);
         for (target, binding) in layer.bindings.iter().filter(|(target, _)| *target != name && root(target) == name) {
             self.bind_part(var, &ty, target, binding, finished);
         }
+    }
+
+    /// Does userdata of its name go before the value of a parameter? Not where an earlier layer feeds it; else as the group says,
+    /// or the shader by its metadata.
+    fn interpolated(&self, param: &ShaderParam, layer: &Layer) -> bool {
+        let name = &self.shader.variables[param.var.0 as usize].name;
+        if self.connected.contains(&param.var) {
+            return false;
+        }
+        let said = layer.interpolated.iter().rev().find(|(named, _)| named == name);
+        said.map_or_else(|| declared_interpolated(param), |&(_, yes)| yes)
+    }
+
+    /// The userdata of a name where the point has it, else the value.
+    fn userdata(&mut self, name: &str, value: Value) -> Value {
+        let Value::Regs(old) = &value else { return value };
+        let count = old.len() as u32;
+        let query = match old.first().map(|&reg| self.b.program.kind(reg)) {
+            Some(Kind::Float) => AttributeType::Floats(count),
+            Some(Kind::Int) => AttributeType::Ints(count),
+            Some(Kind::String) => AttributeType::Strings(count),
+            Some(Kind::Closure) | None => return value,
+        };
+        let asked = vec![self.symbol(""), self.symbol(name)];
+        let results = self.b.call(Routine::Attribute(AttributeQuery { ty: query, slopes: false }), asked, self.span);
+        let new = results[1..].iter().zip(old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
+        Value::Regs(new)
     }
 
     /// How many elements a binding gives to a parameter that takes any number.
@@ -316,6 +347,15 @@ impl Lower<'_> {
             }
         }
     }
+}
+
+/// `[[int lockgeom = 0]]` or `[[int interpolated = 1]]`, as OSL has it in old and in new.
+fn declared_interpolated(param: &ShaderParam) -> bool {
+    param.metadata.iter().any(|entry| match (entry.name.as_str(), &entry.value.kind) {
+        ("lockgeom", ExprKind::Int(x)) => *x == 0,
+        ("interpolated", ExprKind::Int(x)) => *x != 0,
+        _ => false,
+    })
 }
 
 /// The parameters of a layer that somebody reads: later layers, or the host when outputs are kept.

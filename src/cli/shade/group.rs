@@ -1,0 +1,178 @@
+//! The group that a command line describes.
+
+use super::options::{Options, Step, Value};
+use crate::cli::failure::Failure;
+use crate::compile::Compiler;
+use crate::scene::{Connection, GroupSpec, Hints, Layer, ParamType, ParamValue, Place, ShaderFiles, Usage, Values, parse_group};
+use std::path::PathBuf;
+
+/// The group as written, and the compiler that knows its shaders.
+pub fn group(options: &Options, compiler: Compiler) -> Result<(GroupSpec, ShaderFiles), Failure> {
+    let mut files = ShaderFiles::new(compiler).lenient(true);
+    let mut spec = GroupSpec {
+        usage: Usage::Surface,
+        name: options.groupname.clone(),
+        is_light: false,
+        layers: Vec::new(),
+        connections: Vec::new(),
+        place: place(),
+        search: search(options),
+    };
+    let (mut params, mut layer, mut expressions) = (Vec::new(), None, 0);
+    for step in &options.steps {
+        let shader = match step {
+            Step::Layer(name) => {
+                layer = Some(name.clone());
+                continue;
+            }
+            Step::Param(value) => {
+                params.push(param(value)?);
+                continue;
+            }
+            Step::Connect([from, output, to, input]) => {
+                spec.connections.push(connection(from, output, to, input));
+                continue;
+            }
+            Step::Group(text) => {
+                add_text(text, &mut spec)?;
+                continue;
+            }
+            Step::Expr(code) => {
+                let name = format!("expr_{expressions}");
+                expressions += 1;
+                files = files.with_shader(&expression(&name, code)).map_err(|error| Failure::Wrong(error.to_string()))?;
+                name
+            }
+            Step::Shader(name) => name.clone(),
+        };
+        let name = layer.take().unwrap_or_else(|| unnamed(&shader, &spec));
+        spec.layers.push(Layer { shader, layer_name: name, params: std::mem::take(&mut params), place: place() });
+    }
+    if let Some(param) = params.first() {
+        let text = format!("error: there is no shader after --param {}\n  help: values come before their shader", param.name);
+        return Err(Failure::Usage(text));
+    }
+    if spec.layers.is_empty() {
+        let text = "error: there is no shader and no group\n  help: velour shade --help shows how to name one";
+        return Err(Failure::Usage(text.to_owned()));
+    }
+    Ok((spec, files))
+}
+
+/// A value for a parameter, taken for what it looks like where no type is given.
+pub fn param(value: &Value) -> Result<ParamValue, Failure> {
+    let (kind, array) = match &value.ty {
+        Some(text) => written_type(text)?,
+        None => (guessed(&value.text), None),
+    };
+    let wrong = || Failure::Usage(format!("error: `{}` is no value of type {kind:?}", value.text));
+    let size = kind.components() * array.unwrap_or(1);
+    let parts = value.text.split(',').map(str::trim);
+    let values = match kind {
+        ParamType::String if array.is_none() => Values::Strings(vec![value.text.clone()]),
+        ParamType::String => {
+            let mut texts: Vec<String> = parts.map(str::to_owned).collect();
+            texts.resize(size, String::new());
+            Values::Strings(texts)
+        }
+        ParamType::Int => {
+            let numbers: Result<Vec<i32>, _> = parts.map(str::parse).collect();
+            let mut numbers = numbers.map_err(|_| wrong())?;
+            numbers.resize(size, 0);
+            Values::Ints(numbers)
+        }
+        _ => {
+            let numbers: Result<Vec<f32>, _> = parts.map(str::parse).collect();
+            let mut numbers = numbers.map_err(|_| wrong())?;
+            // One number for a color is all of its components.
+            let fill = if numbers.len() == 1 && kind != ParamType::Matrix { numbers[0] } else { 0.0 };
+            numbers.resize(size, fill);
+            Values::Floats(numbers)
+        }
+    };
+    let hints = Hints { interpolated: value.interpolated, interactive: value.interactive };
+    Ok(ParamValue { kind, array, name: value.name.clone(), values, hints, place: place() })
+}
+
+/// `color`, `float[4]`.
+fn written_type(text: &str) -> Result<(ParamType, Option<usize>), Failure> {
+    let (name, array) = match text.strip_suffix(']').and_then(|text| text.split_once('[')) {
+        Some((name, length)) => (name, length.parse().ok().filter(|n| (1..=1 << 20).contains(n)).map(Some)),
+        None => (text, Some(None)),
+    };
+    match (ParamType::from_name(name), array) {
+        (Some(kind), Some(array)) => Ok((kind, array)),
+        _ => {
+            let names = ParamType::NAMES.join(", ");
+            Err(Failure::Usage(format!("error: `{text}` is no type\n  help: the types are {names}, and arrays such as float[3]")))
+        }
+    }
+}
+
+/// Sixteen numbers are a matrix, three a vector, one an int or a float; anything else is text.
+fn guessed(text: &str) -> ParamType {
+    let numbers = || text.split(',').map(|part| part.trim().parse::<f32>());
+    let (count, all) = (numbers().count(), numbers().all(|number| number.is_ok()));
+    match count {
+        16 if all => ParamType::Matrix,
+        3 if all => ParamType::Vector,
+        1 if text.parse::<i32>().is_ok() => ParamType::Int,
+        1 if all => ParamType::Float,
+        _ => ParamType::String,
+    }
+}
+
+/// The shader around the statements of `--expr`.
+fn expression(name: &str, code: &str) -> String {
+    format!(
+        "shader {name}(float s = u [[int interpolated = 1]], float t = v [[int interpolated = 1]],\n\
+         output color result = 0, output float alpha = 1)\n{{\n{code}\n;\n}}\n"
+    )
+}
+
+fn unnamed(shader: &str, spec: &GroupSpec) -> String {
+    // As OSL names layers without a name.
+    format!("{shader}_{}", spec.layers.len())
+}
+
+fn connection(from: &str, output: &str, to: &str, input: &str) -> Connection {
+    Connection {
+        source_layer: from.to_owned(),
+        source_param: output.to_owned(),
+        target_layer: to.to_owned(),
+        target_param: input.to_owned(),
+        place: place(),
+    }
+}
+
+/// Adds the layers and connections of a text, or of a file that has it.
+fn add_text(text: &str, spec: &mut GroupSpec) -> Result<(), Failure> {
+    let file = std::path::Path::new(text);
+    let (name, text) = match std::fs::read_to_string(file) {
+        Ok(read) => (text.to_owned(), read),
+        Err(_) => ("--group".to_owned(), text.to_owned()),
+    };
+    let at = |offset: usize| {
+        let before = &text[..offset.min(text.len())];
+        let line = before.matches('\n').count() as u32 + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() as u32 + 1;
+        Place { file: name.as_str().into(), line, column }
+    };
+    let statements = parse_group(&text, &at).map_err(|error| Failure::Wrong(error.to_string()))?;
+    spec.layers.extend(statements.layers);
+    spec.connections.extend(statements.connections);
+    Ok(())
+}
+
+/// Here, then the folders of `--path` and of OSL's own setting for them.
+fn search(options: &Options) -> Vec<PathBuf> {
+    let mut folders = vec![PathBuf::from(".")];
+    folders.extend(options.path.iter().cloned());
+    let named = options.settings.iter().filter(|(name, _)| name == "searchpath:shader");
+    folders.extend(named.flat_map(|(_, list)| list.split(':').map(PathBuf::from)));
+    folders
+}
+
+fn place() -> Place {
+    Place { file: "command line".into(), line: 1, column: 1 }
+}

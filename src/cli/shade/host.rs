@@ -1,0 +1,128 @@
+//! What the shaders of `velour shade` may ask for: the spaces, attributes and userdata of OSL's testshade.
+
+use super::group::param;
+use super::options::Options;
+use crate::cli::failure::Failure;
+use crate::exec::{Attribute, AttributeAnswer, AttributeRequest, Host, Points};
+use crate::render::camera_attributes;
+use crate::ops::matrix::{IDENTITY, Matrix, inverse, multiply};
+use crate::scene::{ParamValue, Values};
+use std::collections::HashMap;
+
+/// Spaces and values around the patch.
+#[derive(Debug)]
+pub struct PatchHost {
+    res: [u32; 2],
+    attributes: HashMap<String, Attribute>,
+    userdata: Vec<ParamValue>,
+}
+
+/// The planes between which the camera sees.
+const CLIP: [f32; 2] = [0.1, 1000.0];
+
+impl PatchHost {
+    /// The host of a command line.
+    ///
+    /// # Errors
+    /// A value of `--userdata` that cannot be read.
+    pub fn new(options: &Options) -> Result<Self, Failure> {
+        let mut attributes = camera_attributes(options.res, 90.0, CLIP, [0.0, 1.0]);
+        // OSL's tests ask for it.
+        attributes.insert("options.blahblah".to_owned(), Attribute::Floats(vec![3.14159]));
+        let userdata: Result<Vec<ParamValue>, Failure> = options.userdata.iter().map(param).collect();
+        Ok(PatchHost { res: options.res, attributes, userdata: userdata? })
+    }
+}
+
+impl PatchHost {
+    /// The matrix from common to what the camera sees.
+    fn space_of_common(&self, name: &str) -> Option<Matrix> {
+        let ndc = || multiply(&screen(), &multiply(&scaled(0.5, 0.5, 1.0), &moved(0.5, 0.5, 0.0)));
+        Some(match name {
+            "screen" => screen(),
+            "NDC" => ndc(),
+            "raster" => multiply(&ndc(), &scaled(self.res[0] as f32, self.res[1] as f32, 1.0)),
+            _ => return None,
+        })
+    }
+}
+
+/// A turn about z, then nothing else.
+fn turned(quarters: f32) -> Matrix {
+    let (s, c) = (crate::math::elementary::sin(quarters), crate::math::elementary::cos(quarters));
+    [c, s, 0.0, 0.0, -s, c, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+}
+
+fn moved(x: f32, y: f32, z: f32) -> Matrix {
+    let mut m = IDENTITY;
+    m[12..15].copy_from_slice(&[x, y, z]);
+    m
+}
+
+fn scaled(x: f32, y: f32, z: f32) -> Matrix {
+    let mut m = IDENTITY;
+    (m[0], m[5], m[10]) = (x, y, z);
+    m
+}
+
+/// A perspective of 90 degrees: what is at the near plane has depth 0, at the far one 1.
+fn screen() -> Matrix {
+    let [near, far] = CLIP;
+    let mut m = IDENTITY;
+    (m[10], m[11], m[14], m[15]) = (far / (far - near), 1.0, -far * near / (far - near), 0.0);
+    m
+}
+
+impl Host for PatchHost {
+    fn space(&self, name: &str, _points: &Points) -> Option<Matrix> {
+        let quarter = std::f32::consts::FRAC_PI_4;
+        Some(match name {
+            "" | "common" | "world" | "camera" => IDENTITY,
+            "shader" => multiply(&turned(quarter), &moved(1.0, 0.0, 0.0)),
+            "object" => multiply(&turned(2.0 * quarter), &moved(0.0, 1.0, 0.0)),
+            "myspace" => scaled(1.0, 2.0, 1.0),
+            "screen" | "NDC" | "raster" => inverse(&self.space_of_common(name)?),
+            _ => return None,
+        })
+    }
+
+    fn attribute(&self, asked: &AttributeRequest<'_>, answer: &mut AttributeAnswer<'_>) {
+        let named = if asked.object.is_empty() { asked.name.to_owned() } else { format!("{}.{}", asked.object, asked.name) };
+        if let Some(value) = self.attributes.get(&named).or_else(|| self.attributes.get(asked.name)) {
+            return answer.all(value);
+        }
+        if !asked.object.is_empty() {
+            return;
+        }
+        let points = asked.points;
+        for &lane in answer.lanes() {
+            let [u, v] = [(&points.u, &points.dudx, &points.dudy), (&points.v, &points.dvdx, &points.dvdy)]
+                .map(|(value, dx, dy)| [value[lane], dx[lane], dy[lane]]);
+            let p = points.p.get(lane);
+            let value = match asked.name {
+                "s" => Some(u),
+                "t" => Some(v),
+                "red" if p.x > 0.5 => Some(u),
+                "green" if p.x < 0.5 => Some(v),
+                "blue" if (p.y * 12.0) as i32 % 2 == 0 => Some([1.0 - u[0], -u[1], -u[2]]),
+                _ => None,
+            };
+            if let Some([value, dx, dy]) = value {
+                answer.floats(lane, &[value]);
+                answer.slopes(lane, &[dx], &[dy]);
+            }
+            match asked.name {
+                "face_idx" => answer.ints(lane, &[(4.0 * u[0]) as i32]),
+                "shading:index" => answer.ints(lane, &[points.index[lane]]),
+                _ => {}
+            }
+        }
+        if let Some(value) = self.userdata.iter().find(|value| value.name == asked.name) {
+            answer.all(&match &value.values {
+                Values::Ints(values) => Attribute::Ints(values.clone()),
+                Values::Floats(values) => Attribute::Floats(values.clone()),
+                Values::Strings(values) => Attribute::Strings(values.clone()),
+            });
+        }
+    }
+}

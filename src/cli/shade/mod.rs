@@ -1,0 +1,23 @@
+//! `velour shade`: runs shaders on a grid of points, as OSL's testshade does.
+//!
+//! Decision (2026-11-29): the options are read by hand instead of by clap, because in testshade's command line the order of
+//! shaders and parameters is the group, options carry modifiers after colons (`--param:type=int`), and each may begin with one
+//! dash or two, none of which clap knows.
+
+mod grid;
+mod group;
+mod host;
+mod options;
+mod run;
+mod save;
+mod wording;
+
+pub use run::run;
+
+/// Arguments of `velour shade`; see `--help`.
+#[derive(clap::Args)]
+#[command(disable_help_flag = true)]
+pub struct ShadeArgs {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    pub words: Vec<String>,
+}
