@@ -54,6 +54,7 @@
 //! | `grammar/` | | text to syntax tree: preprocessor, lexer, grammar, diagnostics (a crate of its own) |
 //! | [`lang`] | | nouns: types, symbols, tables of builtins and globals, what a closure declares |
 //! | [`math`] | | columns, elementary functions, noise, frames, warps, quadrature; knows no language |
+//! | [`texture`] | | pictures that shaders look up: pyramids, filters; files with `render` |
 //! | [`ops`] | | the one meaning of every builtin |
 //! | [`check`] | | syntax tree to typed shader; every mistake a user can make ends here |
 //! | [`ir`] | | typed shaders to a program; print; verify |
@@ -137,6 +138,7 @@ pub mod optimize;
 pub mod render;
 #[cfg(feature = "render")]
 pub mod scene;
+pub mod texture;
 
 /// The blocks of the README, as documentation tests.
 #[cfg(doctest)]

@@ -164,7 +164,17 @@ impl Checker<'_> {
             return Expr::error(span);
         }
         let mut arguments = Vec::new();
+        let mut option = String::new();
         for (at, (value, arg)) in values.into_iter().zip(args).enumerate() {
+            if signature.options && at >= signature.formals.len() {
+                if (at - signature.formals.len()).is_multiple_of(2) {
+                    option = self.option_name(name, &value);
+                } else if is_written(name, &option) {
+                    let Some(place) = self.check_place(arg) else { return Expr::error(span) };
+                    arguments.push(Argument::Out(place));
+                    continue;
+                }
+            }
             match signature.formals.get(at) {
                 Some((_, true)) => {
                     let Some(place) = self.check_place(arg) else { return Expr::error(span) };
@@ -176,6 +186,30 @@ impl Checker<'_> {
         }
         self.check_format(name, &arguments, span);
         Expr::new(ExprKind::Builtin(name, arguments), signature.returns.clone(), span)
+    }
+
+    /// The name of an option, with a warning where it has no meaning here.
+    fn option_name(&mut self, function: &str, token: &Expr) -> String {
+        let known: &[&str] = match function {
+            "texture" | "environment" => TEXTURE_OPTIONS,
+            _ => &[],
+        };
+        let ExprKind::String(name) = &token.kind else {
+            if !known.is_empty() {
+                let message = format!("an option of `{function}` whose name is computed has no effect");
+                self.report(Diagnostic::warning("W0506", token.span, message).help("write its name as a literal string"));
+            }
+            return String::new();
+        };
+        if !known.is_empty() && !known.contains(&name.as_str()) {
+            let message = format!("`{function}` has no option \"{name}\"");
+            let help = match nearest(name, known.iter().copied()) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => format!("its options are {}", known.join(", ")),
+            };
+            self.report(Diagnostic::warning("W0506", token.span, message).help(help));
+        }
+        name.clone()
     }
 
     /// Reports a literal name that stands for no noise.
@@ -284,6 +318,17 @@ fn wrong_choice(param: &ParamSpec, value: &Expr) -> Option<String> {
     let ExprKind::String(text) = &value.kind else { return None };
     let known = param.choices.is_empty() || param.choices.contains(&text.as_str());
     (!known).then(|| format!("\"{text}\" is no {} that velour knows", param.name))
+}
+
+/// The options of `texture` and `environment`.
+const TEXTURE_OPTIONS: &[&str] = &[
+    "alpha", "blur", "colorspace", "errormessage", "fill", "firstchannel", "interp", "missingalpha", "missingcolor", "rblur", "rwidth", "rwrap",
+    "sblur", "subimage", "swidth", "swrap", "tblur", "time", "twidth", "twrap", "width", "wrap",
+];
+
+/// Does the function write the value of an option?
+fn is_written(function: &str, option: &str) -> bool {
+    matches!(function, "texture" | "environment" | "texture3d") && matches!(option, "alpha" | "errormessage")
 }
 
 /// True for a literal of this value.

@@ -117,7 +117,7 @@ fn score_builtin(signature: &Signature, args: &[Expr]) -> Option<u32> {
             // What a builtin writes must be of the very type.
             Formal::Type(ty) if *output && ty.length != Length::Unsized => (*ty == arg.ty).then_some(100)?,
             Formal::Type(ty) => score_argument(ty, arg)?,
-            _ if *output && !holds_plain_values(&arg.ty) => return None,
+            _ if *output && !holds_values(&arg.ty) => return None,
             Formal::Any => (!arg.ty.is_array()).then_some(1)?,
             Formal::AnyArray => arg.ty.is_array().then_some(1)?,
         };
@@ -136,9 +136,8 @@ fn score_closure(spec: &ClosureSpec, args: &[Expr]) -> Option<u32> {
 }
 
 /// Can a builtin that writes any type write this one? Structs and closures are not among what it gives.
-fn holds_plain_values(ty: &Type) -> bool {
-    let base = ty.element_type().base();
-    base.is_some_and(|base| !matches!(base, Base::Void | Base::Closure))
+fn holds_values(ty: &Type) -> bool {
+    ty.element_type().base().is_some_and(|base| base != Base::Void)
 }
 
 /// May a function that writes a `formal` work on a variable of type `actual` itself?

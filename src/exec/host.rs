@@ -5,7 +5,9 @@ use super::report::Report;
 use crate::ir::op::AttributeType;
 use crate::lang::symbols::{Strings, Symbol};
 use crate::ops::matrix::{IDENTITY, Matrix, inverse, multiply};
+use crate::texture::Texture;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// What shaders ask beside their points. Every question is asked once a batch, for all its lanes; what no shader of a group
 /// asks is never computed. Many threads ask at the same time.
@@ -27,6 +29,31 @@ pub trait Host: Send + Sync {
     /// [`RAY_TYPES`].
     fn ray_type(&self, name: &str) -> i32 {
         RAY_TYPES.iter().find(|(known, _)| *known == name).map_or(0, |(_, bits)| *bits)
+    }
+
+    /// Answers for a message of a named source, as `getmessage("trace", "hitdist", …)` asks; the source stands for the object. By
+    /// default there is none.
+    fn message(&self, asked: &AttributeRequest<'_>, answer: &mut AttributeAnswer<'_>) {
+        let _ = (asked, answer);
+    }
+
+    /// The texture of a name, which need not be a file's; or why there is none. By default there are none.
+    ///
+    /// # Errors
+    /// One clause for the person who wrote the shader.
+    fn texture(&self, name: &str) -> Result<Arc<Texture>, String> {
+        Err(format!("there is no texture `{name}`: this host has none"))
+    }
+
+    /// What rays of `trace` meet: true for each that meets something. By default none does.
+    fn trace(&self, asked: &TraceRequest<'_>) -> Vec<bool> {
+        vec![false; asked.lanes.len()]
+    }
+
+    /// The text of a file that a shader names as its dictionary; by default there are no files.
+    fn read_text(&self, name: &str) -> Option<String> {
+        let _ = name;
+        None
     }
 
     /// Hears what one batch has said, lane by lane, and may take it; what it leaves waits in the machine for
@@ -68,6 +95,17 @@ pub struct AttributeRequest<'a> {
     pub ty: AttributeType,
     /// True when derivatives are read as well; floats only.
     pub slopes: bool,
+    /// The points of the batch.
+    pub points: &'a Points,
+}
+
+/// Rays that shaders of a batch send out.
+#[derive(Clone, Copy, Debug)]
+pub struct TraceRequest<'a> {
+    /// The lanes that ask, a ray each.
+    pub lanes: &'a [usize],
+    /// Origin, direction, and the least and the most distance of a hit, in units of the direction's length.
+    pub rays: &'a [[f32; 8]],
     /// The points of the batch.
     pub points: &'a Points,
 }

@@ -23,11 +23,13 @@
 mod arrays;
 mod closures;
 mod code;
+mod dictionaries;
 mod group;
 mod host;
 mod kernels;
 mod lane;
 mod machine;
+mod messages;
 mod noise;
 mod output;
 mod points;
@@ -38,10 +40,11 @@ mod routines;
 mod run;
 mod smooth;
 mod text;
+mod textures;
 
 pub use group::{Group, Locate};
-pub use host::{Attribute, AttributeAnswer, AttributeRequest, Host, PlainHost, built_in_space};
+pub use host::{Attribute, AttributeAnswer, AttributeRequest, Host, PlainHost, TraceRequest, built_in_space};
 pub use machine::{DEFAULT_BUDGET, Machine};
 pub use output::{OutputView, Values};
 pub use points::{MAX_LANES, Points, RAY_TYPES};
-pub use report::{Mistake, Report, ReportKind, ReportPlace};
+pub use report::{MessageFault, Mistake, Report, ReportKind, ReportPlace};

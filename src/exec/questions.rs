@@ -1,10 +1,10 @@
 //! Questions to the host: each is asked once a batch, for all lanes that ask it.
 
-use super::host::{AttributeAnswer, AttributeRequest, between};
+use super::host::{AttributeAnswer, AttributeRequest, TraceRequest, between};
 use super::lane::Lane;
 use super::report::Mistake;
 use super::run::Run;
-use crate::ir::op::AttributeQuery;
+use crate::ir::op::{AttributeOf, AttributeQuery};
 use crate::ir::program::{Kind, Reg};
 use crate::lang::symbols::Symbol;
 use crate::ops::matrix::{IDENTITY, Matrix};
@@ -38,6 +38,22 @@ impl Run<'_> {
                 self.regs.floats[reg.0 as usize][lane] = value;
             }
             self.regs.ints[dst[16].0 as usize][lane] = found.is_some() as i32;
+        }
+    }
+
+    /// Asks what rays meet.
+    pub(super) fn trace(&mut self, dst: Reg, src: &[Reg]) {
+        let lanes: Vec<usize> = (0..self.n).filter(|&lane| self.s.mask[lane] != 0).collect();
+        let rays: Vec<[f32; 8]> = lanes
+            .iter()
+            .map(|&lane| {
+                let args = Lane { run: self, src, lane };
+                std::array::from_fn(|at| args.f(at))
+            })
+            .collect();
+        let hits = self.host.trace(&TraceRequest { lanes: &lanes, rays: &rays, points: self.points });
+        for (at, &lane) in lanes.iter().enumerate() {
+            self.regs.ints[dst.0 as usize][lane] = i32::from(hits.get(at).copied().unwrap_or(false));
         }
     }
 
@@ -113,7 +129,10 @@ impl Run<'_> {
         let (floats_out, ints_out) = (floats.as_mut_slice(), ints.as_mut_slice());
         let mut answer =
             AttributeAnswer { ty: query.ty, lanes, found: &mut found, floats: floats_out, ints: ints_out, strings };
-        self.host.attribute(&asked, &mut answer);
+        match query.of {
+            AttributeOf::Attribute => self.host.attribute(&asked, &mut answer),
+            AttributeOf::Message => self.host.message(&asked, &mut answer),
+        }
         self.regs.ints[dst[0].0 as usize] = found;
         match kind {
             Kind::Float => {

@@ -56,8 +56,51 @@ pub enum Mistake {
         /// The space that was asked for.
         to: String,
     },
+    /// A texture that there is not.
+    Texture {
+        /// Why not.
+        reason: String,
+    },
+    /// A message that could not be set or read.
+    Message {
+        /// Its name.
+        name: String,
+        /// Why not.
+        fault: MessageFault,
+        /// Where it was set, or asked for, before.
+        first: Box<ReportPlace>,
+    },
     /// Anything else; the text says it.
     Other,
+}
+
+/// What is wrong with a message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MessageFault {
+    /// It is set a second time.
+    Twice,
+    /// It is set after it was asked for.
+    AskedBefore,
+    /// It is asked for as another type than that of its value.
+    Type {
+        /// The type of its value.
+        created: String,
+        /// The type that was asked for.
+        wanted: String,
+    },
+}
+
+impl MessageFault {
+    /// One clause that ends where the place of the first use belongs.
+    pub(super) fn text(&self, name: &str) -> String {
+        match self {
+            MessageFault::Twice => format!("the message \"{name}\" is set already,"),
+            MessageFault::AskedBefore => format!("the message \"{name}\" is set after it was asked for"),
+            MessageFault::Type { created, wanted } => {
+                format!("the message \"{name}\" is read as {wanted} and was made as {created}")
+            }
+        }
+    }
 }
 
 /// A place in a shader's text.

@@ -41,6 +41,34 @@ impl Run<'_> {
             Routine::Print(to, format) => self.print(*to, format, src, span),
             Routine::RayType => self.ray_type(dst, src),
             Routine::Attribute(attribute) => self.attribute(*attribute, dst, src),
+            Routine::Texture(texture) => self.texture(*texture, dst, src, span),
+            Routine::TextureInfo(ty) => self.texture_info(*ty, dst, src),
+            Routine::SetMessage(shape) => self.set_message(shape, src, span),
+            Routine::GetMessage(shape) => self.get_message(shape, dst, src, span),
+            Routine::Random(_) => self.random(dst),
+            Routine::Trace => self.trace(dst[0], src),
+            Routine::DictFind => self.dict_find(dst[0], src, span),
+            Routine::DictFindBelow => self.dict_find_below(dst[0], src),
+            Routine::DictNext => self.dict_next(dst[0], src),
+            Routine::DictValue(ty) => self.dict_value(*ty, dst, src, span),
+        }
+    }
+
+    /// Numbers in [0, 1) by chance: of the place of the point and of how many there were before, so that a picture comes out the same
+    /// again, in any order of its points.
+    fn random(&mut self, dst: &[Reg]) {
+        self.s.draws.resize(self.n, 0);
+        for lane in 0..self.n {
+            if self.s.mask[lane] == 0 {
+                continue;
+            }
+            let p = self.points.p.get(lane);
+            for reg in dst {
+                let draw = self.s.draws[lane];
+                self.s.draws[lane] = draw.wrapping_add(1);
+                let mixed = hash::hash_point_float(p.x, p.y, p.z, f32::from_bits(draw)) as u32;
+                self.regs.floats[reg.0 as usize][lane] = (mixed >> 8) as f32 / (1 << 24) as f32;
+            }
         }
     }
 

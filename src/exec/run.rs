@@ -1,10 +1,13 @@
 //! One batch under way: what every part of the machine works on.
 
+use super::dictionaries::Dictionaries;
 use super::group::Group;
 use super::host::Host;
+use super::messages::Slot;
 use super::points::Points;
 use super::registers::Registers;
 use super::report::Report;
+use super::textures::Found;
 use crate::closure::tree::{Keyword, NodeId, Param, Tree};
 use crate::ir::program::Reg;
 use crate::ops::matrix::Matrix;
@@ -42,6 +45,16 @@ pub(super) struct Scratch {
     pub int_columns: Vec<Vec<i32>>,
     /// The names that the host is asked about.
     pub names: [String; 2],
+    /// The messages of this batch.
+    pub messages: Vec<Slot>,
+    /// Dictionaries, and what was found in them in this batch.
+    pub dictionaries: Dictionaries,
+    /// Textures that the host was asked for in this batch, by name and by symbol.
+    pub textures: Vec<(String, Found)>,
+    /// See `textures`; those of many files are not here.
+    pub texture_symbols: Vec<(i32, Found)>,
+    /// How many random numbers each lane has had; empty when none has had any.
+    pub draws: Vec<u32>,
 }
 
 /// One batch under way.
@@ -70,6 +83,11 @@ impl Scratch {
         self.spaces.clear();
         self.ray_types.clear();
         self.shared.clear();
+        self.messages.clear();
+        self.dictionaries.begin();
+        self.draws.clear();
+        self.textures.clear();
+        self.texture_symbols.clear();
     }
 }
 

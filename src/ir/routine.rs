@@ -61,6 +61,47 @@ pub enum Routine {
     RayType,
     /// A named attribute: symbols of object and name to an int that is 1 when there is one, and the values.
     Attribute(AttributeQuery),
+    /// `setmessage`: name and value.
+    SetMessage(MessageShape),
+    /// `getmessage`: name to an int that is 1 when there is such a message, and its value.
+    GetMessage(MessageShape),
+    /// `random`: so many floats.
+    Random(u32),
+    /// `trace`: origin, direction, least and most distance to an int that is 1 when something is hit.
+    Trace,
+    /// `dict_find`: text of a dictionary and query to a node.
+    DictFind,
+    /// `dict_find` below a node: node and query to a node.
+    DictFindBelow,
+    /// `dict_next`: node to node.
+    DictNext,
+    /// `dict_value`: node and attribute to an int that is 1 when there is one of this shape, and the values.
+    DictValue(AttributeType),
+    /// `texture` and `environment`.
+    Texture(TextureCall),
+    /// `gettextureinfo`: file and name of what is asked for, s and t, to an int that is 1 when it is known, and the values.
+    TextureInfo(AttributeType),
+}
+
+/// A look-up of a texture. Its sources are the file; the coordinates and their changes along x and y ([`TextureCall::coordinates`]);
+/// widths, blurs, fill and what is taken where there is no file, nine floats; first channel, subimage and which of those are given, three
+/// ints; wraps, interpolation, subimage and color space by name, five strings. Its results are channels and alpha, with `slopes` the
+/// derivatives of these along x and along y, an int that is 1 when there was a file, and what went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TextureCall {
+    /// Channels, 1 or 3.
+    pub channels: u32,
+    /// True for a direction instead of s and t.
+    pub environment: bool,
+    /// See above.
+    pub slopes: bool,
+}
+
+impl TextureCall {
+    /// How many floats the coordinates and their changes are.
+    pub fn coordinates(self) -> u32 {
+        if self.environment { 9 } else { 6 }
+    }
 }
 
 /// The functions that have derivatives by a rule of their own.
@@ -91,6 +132,28 @@ pub struct AttributeQuery {
     pub ty: AttributeType,
     /// True when the derivatives along x of all values follow them, then those along y; floats only.
     pub slopes: bool,
+    /// Who is asked for what.
+    pub of: AttributeOf,
+}
+
+/// What is asked for by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttributeOf {
+    /// `getattribute`: of an object, of what is shaded, or of the scene.
+    Attribute,
+    /// `getmessage` with a source, such as what the last ray has met: the source stands for the object.
+    Message,
+}
+
+/// What a message is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MessageShape {
+    /// The kind of its registers.
+    pub kind: Kind,
+    /// How many there are.
+    pub count: u32,
+    /// The name of its type; a message is read as what it was written as.
+    pub ty: String,
 }
 
 /// The type an attribute is asked as.
@@ -177,6 +240,8 @@ pub enum Effect {
     None,
     /// It says something that somebody may hear.
     Prints,
+    /// It changes what is answered later.
+    Changes,
 }
 
 /// What the results of a routine depend on besides its sources.
@@ -263,7 +328,35 @@ impl Routine {
                 let gives = smallvec![(Int, 1), (kind, count.saturating_mul(rows))];
                 Declaration { slopes, reach: Reach::Lane, ..pure(smallvec![(String, 2)], gives) }
             }
+            Routine::Texture(call) => {
+                let values = (call.channels + 1) * if call.slopes { 3 } else { 1 };
+                let takes = smallvec![(String, 1), (Float, call.coordinates() + 9), (Int, 3), (String, 5)];
+                let gives = smallvec![(Float, values), (Int, 1), (String, 1)];
+                Declaration { slopes: Slopes::Given, reach: Reach::Lane, ..pure(takes, gives) }
+            }
+            Routine::TextureInfo(ty) => {
+                let takes = smallvec![(String, 2), (Float, 2)];
+                Declaration { reach: Reach::Lane, ..pure(takes, smallvec![(Int, 1), ty.kind()]) }
+            }
+            Routine::SetMessage(_) | Routine::GetMessage(_) | Routine::Random(_) | Routine::Trace => self.state_declaration(),
+            Routine::DictFind | Routine::DictFindBelow | Routine::DictNext | Routine::DictValue(_) => self.state_declaration(),
         }
+    }
+
+    /// The same for those that depend on what was called before in the lane.
+    fn state_declaration(&self) -> Declaration {
+        use Kind::{Float, Int, String};
+        let (takes, gives): (Kinds, Kinds) = match self {
+            Routine::SetMessage(shape) => (smallvec![(String, 1), (shape.kind, shape.count)], Kinds::new()),
+            Routine::GetMessage(shape) => (smallvec![(String, 1)], smallvec![(Int, 1), (shape.kind, shape.count)]),
+            Routine::Random(count) => (Kinds::new(), smallvec![(Float, *count)]),
+            Routine::Trace => (smallvec![(Float, 8)], smallvec![(Int, 1)]),
+            Routine::DictFindBelow => (smallvec![(Int, 1), (String, 1)], smallvec![(Int, 1)]),
+            Routine::DictNext => (smallvec![(Int, 1)], smallvec![(Int, 1)]),
+            Routine::DictValue(ty) => (smallvec![(Int, 1), (String, 1)], smallvec![(Int, 1), ty.kind()]),
+            _ => (smallvec![(String, 2)], smallvec![(Int, 1)]),
+        };
+        Declaration { takes, gives, slopes: Slopes::None, effect: Effect::Changes, reach: Reach::Lane }
     }
 
     /// Is there such a routine? Not every number that a variant can carry makes one.
@@ -277,7 +370,11 @@ impl Routine {
             Routine::HashString | Routine::Strlen | Routine::GetChar | Routine::StartsWith => true,
             Routine::EndsWith | Routine::Substr | Routine::Concat | Routine::Stof | Routine::Stoi => true,
             Routine::Regex { .. } | Routine::Split(_) | Routine::Format(_) | Routine::Print(..) => true,
-            Routine::RayType => true,
+            Routine::RayType | Routine::SetMessage(_) | Routine::GetMessage(_) | Routine::Trace => true,
+            Routine::DictFind | Routine::DictFindBelow | Routine::DictNext | Routine::DictValue(_) => true,
+            Routine::Random(count) => (1..=3).contains(count),
+            Routine::Texture(call) => matches!(call.channels, 1 | 3),
+            Routine::TextureInfo(_) => true,
         }
     }
 
@@ -307,6 +404,16 @@ impl Routine {
             Routine::Print(..) => "print",
             Routine::RayType => "ray_type",
             Routine::Attribute(_) => "attribute",
+            Routine::SetMessage(_) => "set_message",
+            Routine::GetMessage(_) => "get_message",
+            Routine::Random(_) => "random",
+            Routine::Trace => "trace",
+            Routine::DictFind => "dict_find",
+            Routine::DictFindBelow => "dict_find_below",
+            Routine::DictNext => "dict_next",
+            Routine::DictValue(_) => "dict_value",
+            Routine::Texture(_) => "texture",
+            Routine::TextureInfo(_) => "texture_info",
         }
     }
 }

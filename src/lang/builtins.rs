@@ -79,24 +79,7 @@ int trace(point, vector, [token,value]*)
 ";
 
 /// Builtins that the language has and velour does not run; a call is an error that names the function.
-pub const NOT_YET: &[&str] = &[
-    "bump",
-    "displace",
-    "dict_find",
-    "dict_next",
-    "dict_value",
-    "environment",
-    "gettextureinfo",
-    "getmessage",
-    "pointcloud_get",
-    "pointcloud_search",
-    "pointcloud_write",
-    "random",
-    "setmessage",
-    "texture",
-    "texture3d",
-    "trace",
-];
+pub const NOT_YET: &[&str] = &[];
 
 /// What a formal parameter of a builtin accepts.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,6 +21,7 @@ pub mod color;
 pub mod color_slope;
 pub mod decimal;
 pub mod format;
+pub mod dictionary;
 pub mod fresnel;
 pub mod hash;
 mod matching;

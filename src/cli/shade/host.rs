@@ -3,11 +3,13 @@
 use super::group::param;
 use super::options::Options;
 use crate::cli::failure::Failure;
-use crate::exec::{Attribute, AttributeAnswer, AttributeRequest, Host, Points};
+use crate::exec::{Attribute, AttributeAnswer, AttributeRequest, Host, Points, TraceRequest};
 use crate::render::camera_attributes;
 use crate::ops::matrix::{IDENTITY, Matrix, inverse, multiply};
 use crate::scene::{ParamValue, Values};
+use crate::texture::{Texture, TextureFiles};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Spaces and values around the patch.
 #[derive(Debug)]
@@ -15,6 +17,7 @@ pub struct PatchHost {
     res: [u32; 2],
     attributes: HashMap<String, Attribute>,
     userdata: Vec<ParamValue>,
+    textures: TextureFiles,
 }
 
 /// The planes between which the camera sees.
@@ -28,9 +31,9 @@ impl PatchHost {
     pub fn new(options: &Options) -> Result<Self, Failure> {
         let mut attributes = camera_attributes(options.res, 90.0, CLIP, [0.0, 1.0]);
         // OSL's tests ask for it.
-        attributes.insert("options.blahblah".to_owned(), Attribute::Floats(vec![3.14159]));
+        attributes.insert("options.blahblah".to_owned(), Attribute::Floats(vec![std::f32::consts::PI]));
         let userdata: Result<Vec<ParamValue>, Failure> = options.userdata.iter().map(param).collect();
-        Ok(PatchHost { res: options.res, attributes, userdata: userdata? })
+        Ok(PatchHost { res: options.res, attributes, userdata: userdata?, textures: TextureFiles::new(options.path.clone()) })
     }
 }
 
@@ -84,6 +87,33 @@ impl Host for PatchHost {
             "screen" | "NDC" | "raster" => inverse(&self.space_of_common(name)?),
             _ => return None,
         })
+    }
+
+    /// What rays meet is made up as OSL's testshade makes it up, so that the same shaders say the same.
+    fn trace(&self, asked: &TraceRequest<'_>) -> Vec<bool> {
+        let hit = |(&lane, ray): (&usize, &[f32; 8])| {
+            let along = ray[0] * ray[3] + ray[1] * ray[4] + ray[2] * ray[5];
+            asked.points.u[lane] / along > 0.5
+        };
+        asked.lanes.iter().zip(asked.rays).map(hit).collect()
+    }
+
+    fn message(&self, asked: &AttributeRequest<'_>, answer: &mut AttributeAnswer<'_>) {
+        for &lane in answer.lanes() {
+            match asked.name {
+                "hit" => answer.ints(lane, &[i32::from(asked.points.u[lane] > 0.5)]),
+                "hitdist" if asked.points.u[lane] > 0.5 => answer.floats(lane, &[0.5]),
+                _ => {}
+            }
+        }
+    }
+
+    fn texture(&self, name: &str) -> Result<Arc<Texture>, String> {
+        self.textures.get(name).map_err(|error| error.to_string())
+    }
+
+    fn read_text(&self, name: &str) -> Option<String> {
+        std::fs::read_to_string(name).ok()
     }
 
     fn attribute(&self, asked: &AttributeRequest<'_>, answer: &mut AttributeAnswer<'_>) {

@@ -1,6 +1,6 @@
 //! What goes wrong, in the words of OSL's shading system, which people search for and its references have.
 
-use crate::exec::{Mistake, Report, ReportKind};
+use crate::exec::{MessageFault, Mistake, Report, ReportKind, ReportPlace};
 
 /// A message as one line or more.
 pub fn line(report: &Report) -> String {
@@ -29,6 +29,25 @@ fn words(mistake: &Mistake, report: &Report) -> String {
         ),
         Mistake::Space { name } => format!("Unknown transformation \"{name}\""),
         Mistake::ColorSpace { from, to } => format!("Unknown color space transformation \"{from}\" -> \"{to}\""),
+        Mistake::Message { name, fault, first } => {
+            let (before, here) = (at(first), at(place));
+            match fault {
+                MessageFault::Twice => {
+                    format!("message \"{name}\" already exists (created here: {before}) cannot set again from {here}")
+                }
+                MessageFault::AskedBefore => format!(
+                    "message \"{name}\" was queried before being set (queried here: {before}) setting it now ({here}) would lead to \
+                     inconsistent results"
+                ),
+                MessageFault::Type { created, wanted } => format!(
+                    "type mismatch for message \"{name}\" (created as {created} here: {before}) cannot fetch as {wanted} from {here}"
+                ),
+            }
+        }
         _ => report.to_string(),
     }
+}
+
+fn at(place: &ReportPlace) -> String {
+    format!("{}:{}", place.file, place.line)
 }

@@ -1,6 +1,7 @@
 //! Which variables a piece of code assigns, and whether it has effects: what must be known before lanes part.
 
 use crate::check::typed::*;
+use crate::lang::globals::Global;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
@@ -11,7 +12,7 @@ pub(super) struct Effects {
     pub(super) vars: BTreeSet<VarId>,
     /// Variables it declares, but for those of called functions; they end with it.
     pub(super) declared: BTreeSet<VarId>,
-    /// True when it prints or reports.
+    /// True when it prints, reports, or changes what is answered later.
     pub(super) prints: bool,
     /// True when it can call `exit()`.
     pub(super) exits: bool,
@@ -151,6 +152,12 @@ impl Assigned {
             }
             Builtin(name, args) => {
                 out.prints |= matches!(*name, "printf" | "fprintf" | "error" | "warning");
+                out.prints |= matches!(*name, "setmessage" | "getmessage" | "random" | "trace") || name.starts_with("dict_");
+                if matches!(*name, "bump" | "displace") {
+                    let moved = |v: &Variable| matches!(v.global, Some(Global::P | Global::N));
+                    let moved = shader.variables.iter().enumerate().filter(|(_, variable)| moved(variable));
+                    out.vars.extend(moved.map(|(at, _)| VarId(at as u32)));
+                }
                 out.exits |= *name == "exit";
                 out.costly |= name.contains("noise") || matches!(*name, "pow" | "spline" | "format" | "transform");
                 self.args(shader, args, out);

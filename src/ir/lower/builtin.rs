@@ -28,7 +28,14 @@ impl Lower<'_> {
                 return Value::Regs(Vec::new());
             }
             "spline" | "splineinverse" => return self.spline(name, args, call),
+            "bump" | "displace" => return self.move_surface(name, args, call),
             _ => {}
+        }
+        if let Some(answer) = self.texture_call(name, args, call) {
+            return answer;
+        }
+        if let Some(answer) = self.asking_call(name, args, call) {
+            return answer;
         }
         if let Some(noise) = self.noise_call(name, args, call) {
             return noise;
@@ -172,7 +179,7 @@ impl Lower<'_> {
         self.b.unary(Unary::Sqrt, square)
     }
 
-    fn normalize(&mut self, v: &[Reg]) -> Vec<Reg> {
+    pub(super) fn normalize(&mut self, v: &[Reg]) -> Vec<Reg> {
         let length = self.length(v);
         v.iter().map(|&c| self.b.binary(Binary::Div, c, length)).collect()
     }
@@ -187,7 +194,7 @@ impl Lower<'_> {
         self.length(&normal)
     }
 
-    fn calculate_normal(&mut self, p: &[Reg]) -> Vec<Reg> {
+    pub(super) fn calculate_normal(&mut self, p: &[Reg]) -> Vec<Reg> {
         let dx: Vec<Reg> = p.iter().map(|&reg| self.b.derivative(reg, false)).collect();
         let dy: Vec<Reg> = p.iter().map(|&reg| self.b.derivative(reg, true)).collect();
         self.cross(&dx, &dy)

@@ -4,7 +4,7 @@ use super::state::{Bound, Frame, Lower};
 use super::value::{Value, kind_of, zero_of};
 use crate::check::typed::{ExprKind, Shader, ShaderParam, VarId};
 use crate::ir::build::Builder;
-use crate::ir::op::{AttributeQuery, AttributeType, Routine};
+use crate::ir::op::{AttributeOf, AttributeQuery, AttributeType, Routine};
 use crate::ir::program::*;
 use crate::lang::globals::Global;
 use crate::lang::path::{Step, part, root, steps};
@@ -95,7 +95,7 @@ impl Lower<'_> {
         }
     }
 
-    fn global_var(&self, global: Global) -> VarId {
+    pub(super) fn global_var(&self, global: Global) -> VarId {
         let at = self.shader.variables.iter().position(|variable| variable.global == Some(global));
         VarId(at.unwrap_or(0) as u32)
     }
@@ -150,7 +150,7 @@ impl Lower<'_> {
             Some(Kind::Closure) | None => return value,
         };
         let asked = vec![self.symbol(""), self.symbol(name)];
-        let results = self.b.call(Routine::Attribute(AttributeQuery { ty: query, slopes: false }), asked, self.span);
+        let results = self.b.call(Routine::Attribute(AttributeQuery { ty: query, slopes: false, of: AttributeOf::Attribute }), asked, self.span);
         let new = results[1..].iter().zip(old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
         Value::Regs(new)
     }

@@ -5,11 +5,13 @@
 //! leave early) lanes may differ, so on entry every variable assigned in it gets mutable registers of its own, and
 //! assignments there become masked moves.
 
+mod asking;
 mod assigned;
 mod builtin;
 mod call;
 mod expr;
 mod group;
+mod moving;
 mod noise;
 mod operand;
 mod operator;
@@ -19,6 +21,7 @@ mod state;
 mod statement;
 mod storage;
 mod text;
+mod texture;
 mod value;
 mod writing;
 

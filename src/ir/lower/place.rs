@@ -41,6 +41,11 @@ impl Lower<'_> {
         self.target_at(place, &mut values)
     }
 
+    /// A variable as a whole.
+    pub(super) fn variable_target(&self, var: VarId) -> Target {
+        Target { name: self.resolve(var), element: None, component: None }
+    }
+
     /// Walks to a place by indices that have been computed.
     pub(super) fn target_at(&mut self, place: &Place, indices: &mut impl Iterator<Item = Value>) -> Target {
         let mut target = Target { name: self.resolve(place.var), element: None, component: None };

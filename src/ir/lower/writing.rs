@@ -5,8 +5,8 @@ use super::place::Target;
 use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::{Argument, Expr};
-use crate::ir::op::{AttributeQuery, AttributeType, Routine, Unary};
-use crate::ir::program::{Kind, Reg};
+use crate::ir::op::{AttributeOf, AttributeQuery, Routine, Unary};
+use crate::ir::program::Reg;
 use crate::lang::types::Type;
 
 impl Lower<'_> {
@@ -44,7 +44,7 @@ impl Lower<'_> {
     }
 
     /// The registers of a value, element by element when it is an array.
-    fn flat_regs(&mut self, value: &Value) -> Vec<Reg> {
+    pub(super) fn flat_regs(&mut self, value: &Value) -> Vec<Reg> {
         if !matches!(value, Value::Array { .. }) {
             return self.regs(value);
         }
@@ -56,16 +56,16 @@ impl Lower<'_> {
             let object = self.symbol("");
             inputs.insert(0, object);
         }
+        self.attribute_of(AttributeOf::Attribute, out, inputs)
+    }
+
+    /// Asks the host for a value of the type of a place, and writes it there where it is found.
+    pub(super) fn attribute_of(&mut self, of: AttributeOf, out: &Target, inputs: Vec<Reg>) -> Reg {
         let old = self.load(out);
         let old = self.flat_regs(&old);
-        let kind = old.first().map_or(Kind::Int, |&reg| self.b.program.kind(reg));
-        let count = old.len() as u32;
-        let ty = match kind {
-            Kind::Float => AttributeType::Floats(count),
-            Kind::String => AttributeType::Strings(count),
-            Kind::Int | Kind::Closure => AttributeType::Ints(count),
-        };
-        let results = self.b.call(Routine::Attribute(AttributeQuery { ty, slopes: false }), inputs, self.span);
+        let ty = self.attribute_type(&old);
+        let query = AttributeQuery { ty, slopes: false, of };
+        let results = self.b.call(Routine::Attribute(query), inputs, self.span);
         let new: Vec<Reg> =
             results[1..].iter().zip(&old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
         self.write_flat(out, &new);
@@ -73,7 +73,7 @@ impl Lower<'_> {
     }
 
     /// Writes registers to an output argument, element by element when it is an array.
-    fn write_flat(&mut self, out: &Target, regs: &[Reg]) {
+    pub(super) fn write_flat(&mut self, out: &Target, regs: &[Reg]) {
         let old = self.load(out);
         if !matches!(old, Value::Array { .. }) {
             return self.write(out, &Value::Regs(regs.to_vec()));

@@ -12,6 +12,7 @@ impl Writer<'_> {
             (Slopes::Rule(function), routine) => self.rule_slope(function, routine, dst, src, span),
             (Slopes::Gradient, Routine::Noise(noise)) => self.noise_slope(noise, dst, src, span),
             (Slopes::Given, Routine::Attribute(attribute)) => self.attribute_slope(attribute, dst, src, span),
+            (Slopes::Given, Routine::Texture(call)) => self.texture_slope(call, dst, src, span),
             (Slopes::Gradient | Slopes::Given | Slopes::None, routine) => {
                 self.emit(Instr::Call { routine, dst, src, span });
             }
@@ -51,6 +52,18 @@ impl Writer<'_> {
         dst.extend(dx.into_iter().chain(dy));
         let routine = Routine::Attribute(AttributeQuery { slopes: true, ..attribute });
         self.emit(Instr::Call { routine, dst, src, span });
+    }
+
+    /// Asks the texture for the derivatives as well.
+    fn texture_slope(&mut self, call: TextureCall, dst: Vec<Reg>, src: Vec<Reg>, span: Span) {
+        let (values, rest) = dst.split_at(call.channels as usize + 1);
+        let [dx, dy] =
+            [0, 1].map(|_| values.iter().map(|_| self.program.reg(Kind::Float, false)).collect::<Vec<Reg>>());
+        for ((&value, &x), &y) in values.iter().zip(&dx).zip(&dy) {
+            self.slopes.insert(value, [Some(x), Some(y)]);
+        }
+        let all = values.iter().chain(&dx).chain(&dy).chain(rest).copied().collect();
+        self.emit(Instr::Call { routine: Routine::Texture(TextureCall { slopes: true, ..call }), dst: all, src, span });
     }
 
     /// Asks the noise for its gradient as well and applies the chain rule.

@@ -1,0 +1,174 @@
+//! Dictionaries that shaders search, and the nodes that each lane has found.
+
+use super::lane::Lane;
+use super::report::Mistake;
+use super::run::Run;
+use crate::ir::op::AttributeType;
+use crate::ir::program::Reg;
+use crate::ops::dictionary::Dictionary;
+use std::collections::HashMap;
+use velour_grammar::Span;
+
+/// Dictionaries that a machine remembers, so that shaders which make up new ones do not fill the memory.
+const REMEMBERED: usize = 64;
+
+/// What is known of dictionaries.
+#[derive(Debug, Default)]
+pub(super) struct Dictionaries {
+    /// By text, or by name of file; nothing for what is no XML.
+    numbers: HashMap<String, Option<usize>>,
+    parsed: Vec<Dictionary>,
+    /// Lane by lane what was found: dictionary, node, and the rest of the same search. A shader holds the number of an entry plus one,
+    /// so that no other lane changes it.
+    found: Vec<Vec<Found>>,
+}
+
+#[derive(Debug)]
+struct Found {
+    dictionary: usize,
+    node: usize,
+    rest: Vec<usize>,
+}
+
+impl Dictionaries {
+    /// Forgets what the batch before has found.
+    pub(super) fn begin(&mut self) {
+        self.found.iter_mut().for_each(Vec::clear);
+        if self.numbers.len() > REMEMBERED {
+            *self = Dictionaries::default();
+        }
+    }
+}
+
+impl Run<'_> {
+    /// The dictionary of a text or a file.
+    fn dictionary(&mut self, text: &str, lane: usize, span: Span) -> Option<usize> {
+        if let Some(&known) = self.s.dictionaries.numbers.get(text) {
+            return known;
+        }
+        let read = if text.trim_start().starts_with('<') { None } else { self.host.read_text(text) };
+        let found = match Dictionary::parse(read.as_deref().unwrap_or(text)) {
+            Ok(dictionary) => {
+                self.s.dictionaries.parsed.push(dictionary);
+                Some(self.s.dictionaries.parsed.len() - 1)
+            }
+            Err(reason) => {
+                self.report_once(lane, span, Mistake::Other, format!("this is no dictionary: {reason}"));
+                None
+            }
+        };
+        self.s.dictionaries.numbers.insert(text.to_owned(), found);
+        found
+    }
+
+    /// Keeps the first of what was found, and gives its number; 0 for nothing.
+    fn keep(&mut self, lane: usize, dictionary: usize, mut nodes: Vec<usize>) -> i32 {
+        if nodes.is_empty() {
+            return 0;
+        }
+        let node = nodes.remove(0);
+        let lists = &mut self.s.dictionaries.found;
+        if lists.len() < self.n {
+            lists.resize_with(self.n, Vec::new);
+        }
+        lists[lane].push(Found { dictionary, node, rest: nodes });
+        lists[lane].len() as i32
+    }
+
+    fn found(&self, lane: usize, number: i32) -> Option<&Found> {
+        let at = usize::try_from(number).ok()?.checked_sub(1)?;
+        self.s.dictionaries.found.get(lane)?.get(at)
+    }
+
+    /// `dict_find` of a text: -1 for what is no dictionary.
+    pub(super) fn dict_find(&mut self, dst: Reg, src: &[Reg], span: Span) {
+        for lane in 0..self.n {
+            if self.s.mask[lane] == 0 {
+                continue;
+            }
+            let args = Lane { run: self, src, lane };
+            let (text, path) = (args.s(0).to_owned(), args.s(1).to_owned());
+            let number = match self.dictionary(&text, lane, span) {
+                Some(dictionary) => {
+                    let nodes = self.s.dictionaries.parsed[dictionary].find(0, &path);
+                    self.keep(lane, dictionary, nodes)
+                }
+                None => -1,
+            };
+            self.regs.ints[dst.0 as usize][lane] = number;
+        }
+    }
+
+    /// `dict_find` below a node that was found.
+    pub(super) fn dict_find_below(&mut self, dst: Reg, src: &[Reg]) {
+        for lane in 0..self.n {
+            if self.s.mask[lane] == 0 {
+                continue;
+            }
+            let args = Lane { run: self, src, lane };
+            let below = self.found(lane, args.i(0)).map(|found| (found.dictionary, found.node));
+            let path = args.s(1).to_owned();
+            let number = below.map_or(0, |(dictionary, node)| {
+                let nodes = self.s.dictionaries.parsed[dictionary].find(node, &path);
+                self.keep(lane, dictionary, nodes)
+            });
+            self.regs.ints[dst.0 as usize][lane] = number;
+        }
+    }
+
+    /// `dict_next`: the next node of the same search.
+    pub(super) fn dict_next(&mut self, dst: Reg, src: &[Reg]) {
+        for lane in 0..self.n {
+            if self.s.mask[lane] == 0 {
+                continue;
+            }
+            let args = Lane { run: self, src, lane };
+            let next = self.found(lane, args.i(0)).map(|found| (found.dictionary, found.rest.clone()));
+            let number = next.map_or(0, |(dictionary, rest)| self.keep(lane, dictionary, rest));
+            self.regs.ints[dst.0 as usize][lane] = number;
+        }
+    }
+
+    /// `dict_value`: numbers are separated by commas or spaces.
+    pub(super) fn dict_value(&mut self, ty: AttributeType, dst: &[Reg], src: &[Reg], span: Span) {
+        for lane in 0..self.n {
+            if self.s.mask[lane] == 0 {
+                continue;
+            }
+            let args = Lane { run: self, src, lane };
+            let found = self.found(lane, args.i(0));
+            let text = found.and_then(|f| self.s.dictionaries.parsed[f.dictionary].value(f.node, args.s(1)));
+            let text = text.map(str::to_owned);
+            let there = text.is_some_and(|text| self.put_value(ty, &dst[1..], lane, &text));
+            self.regs.ints[dst[0].0 as usize][lane] = i32::from(there);
+        }
+        self.check_strings(span);
+    }
+
+    fn put_value(&mut self, ty: AttributeType, dst: &[Reg], lane: usize, text: &str) -> bool {
+        let parts = || text.split([',', ' ', '\t', '\n']).filter(|part| !part.is_empty());
+        match ty {
+            AttributeType::Strings(1) => {
+                self.regs.ints[dst[0].0 as usize][lane] = self.tree.strings.symbol(text).0;
+                true
+            }
+            AttributeType::Strings(_) => false,
+            AttributeType::Floats(count) => {
+                let numbers: Vec<f32> = parts().map_while(|part| part.parse().ok()).collect();
+                let enough = numbers.len() >= count as usize;
+                for (reg, number) in dst.iter().zip(numbers).filter(|_| enough) {
+                    self.regs.floats[reg.0 as usize][lane] = number;
+                }
+                enough
+            }
+            AttributeType::Ints(count) => {
+                let numbers: Vec<i32> = parts().map_while(|part| part.parse().ok()).collect();
+                let enough = numbers.len() >= count as usize;
+                for (reg, number) in dst.iter().zip(numbers).filter(|_| enough) {
+                    self.regs.ints[reg.0 as usize][lane] = number;
+                }
+                enough
+            }
+        }
+    }
+}

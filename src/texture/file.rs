@@ -1,0 +1,215 @@
+//! Texture files: PNG, JPEG, HDR, TIFF (tiled and with levels, as `maketx` writes them) and EXR (with levels).
+
+use super::texels::{Level, Texels};
+use super::{Texture, Wrap};
+use exr::prelude as exr;
+use std::fmt;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Why a texture could not be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TextureError {
+    /// There is no such file in the folders looked in.
+    NotFound {
+        /// As it was asked for.
+        name: String,
+    },
+    /// The file is there and cannot be used.
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// Textures together need more memory than they may have.
+    TooLarge {
+        /// The file that did not fit.
+        path: PathBuf,
+        /// Bytes that textures may have.
+        budget: u64,
+    },
+    /// The host has no textures.
+    NoTextures,
+}
+
+impl fmt::Display for TextureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TextureError::NotFound { name } => write!(f, "there is no texture `{name}`"),
+            TextureError::Unreadable { path, reason } => write!(f, "the texture {} cannot be read: {reason}", path.display()),
+            TextureError::TooLarge { path, budget } => {
+                let megabytes = budget >> 20;
+                write!(f, "the texture {} does not fit into the {megabytes} MB that textures may have", path.display())
+            }
+            TextureError::NoTextures => f.write_str("there are no textures here"),
+        }
+    }
+}
+
+impl std::error::Error for TextureError {}
+
+/// The most columns or rows of a file.
+const MOST: usize = 1 << 16;
+
+/// Reads a texture whose decoded texels take at most `budget` bytes.
+///
+/// # Errors
+/// The file is missing, wrong, or too large.
+pub fn read(path: &Path, budget: u64) -> Result<Texture, TextureError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let fail = |reason: String| TextureError::Unreadable { path: path.to_owned(), reason };
+    // The decoders are others' code: whatever a broken file makes them do ends here.
+    let decode = || match extension.as_str() {
+        "exr" => read_exr(path),
+        "tif" | "tiff" | "tx" | "env" => read_tiff(path, budget),
+        _ => read_image(path, budget),
+    };
+    let decoded = std::panic::catch_unwind(decode).unwrap_or_else(|_| Err("its decoder has given up".to_owned()));
+    let texture = decoded.map_err(fail)?;
+    let bytes = texture.resident().1 as u64;
+    if bytes > budget { Err(TextureError::TooLarge { path: path.to_owned(), budget }) } else { Ok(texture) }
+}
+
+/// Refuses sizes that no texture has, before anything of that size is made.
+fn sized(width: usize, height: usize, bytes: usize, budget: u64) -> Result<(), String> {
+    if width == 0 || height == 0 || width > MOST || height > MOST {
+        return Err(format!("it has {width} x {height} texels"));
+    }
+    let all = width as u64 * height as u64 * bytes as u64;
+    if all > budget { Err(format!("it takes {} MB, and textures may have {} MB", all >> 20, budget >> 20)) } else { Ok(()) }
+}
+
+fn read_image(path: &Path, budget: u64) -> Result<Texture, String> {
+    use image::{DynamicImage, ImageReader};
+    let open = || ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|error| error.to_string());
+    let (width, height) = open()?.into_dimensions().map_err(|error| error.to_string())?;
+    sized(width as usize, height as usize, 4, budget)?;
+    let mut reader = open()?;
+    reader.no_limits();
+    let picture = reader.decode().map_err(|error| error.to_string())?;
+    let (width, height) = (width as usize, height as usize);
+    let (channels, rows) = match picture {
+        DynamicImage::ImageLuma8(p) => (1, Texels::Bytes(p.into_raw())),
+        DynamicImage::ImageLumaA8(p) => (2, Texels::Bytes(p.into_raw())),
+        DynamicImage::ImageRgb8(p) => (3, Texels::Bytes(p.into_raw())),
+        DynamicImage::ImageRgba8(p) => (4, Texels::Bytes(p.into_raw())),
+        DynamicImage::ImageLuma16(p) => (1, Texels::Words(p.into_raw())),
+        DynamicImage::ImageLumaA16(p) => (2, Texels::Words(p.into_raw())),
+        DynamicImage::ImageRgb16(p) => (3, Texels::Words(p.into_raw())),
+        DynamicImage::ImageRgba16(p) => (4, Texels::Words(p.into_raw())),
+        DynamicImage::ImageRgb32F(p) => (3, Texels::Floats(p.into_raw())),
+        other => (4, Texels::Floats(other.into_rgba32f().into_raw())),
+    };
+    Ok(Texture::of_rows(width, height, channels, &rows))
+}
+
+/// The images of a TIFF that are each half of the one before are its levels.
+fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
+    use tiff::decoder::{Decoder, DecodingResult, Limits};
+    let failed = |error: tiff::TiffError| error.to_string();
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let mut decoder = Decoder::new(BufReader::new(file)).map_err(failed)?.with_limits(Limits::unlimited());
+    let (mut levels, mut of_all): (Vec<Level>, usize) = (Vec::new(), 0);
+    let mut wrap = [Wrap::default(); 2];
+    loop {
+        let (width, height) = decoder.dimensions().map_err(failed)?;
+        let (width, height) = (width as usize, height as usize);
+        sized(width, height, 4, budget)?;
+        if let Some(last) = levels.last()
+            && (width != (last.width() / 2).max(1) || height != (last.height() / 2).max(1))
+        {
+            break;
+        }
+        if levels.is_empty() {
+            wrap = tiff_wrap(&mut decoder);
+        }
+        let rows = match decoder.read_image().map_err(failed)? {
+            DecodingResult::U8(all) => Texels::Bytes(all),
+            DecodingResult::U16(all) => Texels::Words(all),
+            DecodingResult::F32(all) => Texels::Floats(all),
+            DecodingResult::F64(all) => Texels::Floats(all.into_iter().map(|x| x as f32).collect()),
+            DecodingResult::F16(all) => Texels::Floats(all.into_iter().map(|x| x.to_f32()).collect()),
+            DecodingResult::U32(all) => Texels::Floats(all.into_iter().map(|x| (f64::from(x) / 4_294_967_295.0) as f32).collect()),
+            _ => return Err("its texels are of a kind that no texture has".to_owned()),
+        };
+        let count = match &rows {
+            Texels::Bytes(all) => all.len(),
+            Texels::Words(all) => all.len(),
+            Texels::Floats(all) => all.len(),
+        };
+        let channels = count / (width * height);
+        if channels == 0 || (of_all != 0 && channels != of_all) {
+            break;
+        }
+        of_all = channels;
+        levels.push(Level::of_rows(width, height, channels, &rows));
+        if !decoder.more_images() || decoder.next_image().is_err() {
+            break;
+        }
+    }
+    if levels.is_empty() {
+        return Err("it has no texels".to_owned());
+    }
+    Ok(Texture::of_levels(levels, of_all).with_wrap(wrap))
+}
+
+/// How `maketx --wrap` has marked a file: `mode` or `mode,mode` in a tag of Pixar's.
+fn tiff_wrap<R: std::io::Read + std::io::Seek>(decoder: &mut tiff::decoder::Decoder<R>) -> [Wrap; 2] {
+    let text = decoder.get_tag_ascii_string(tiff::tags::Tag::Unknown(33304)).unwrap_or_default();
+    wrap_modes(&text)
+}
+
+fn wrap_modes(text: &str) -> [Wrap; 2] {
+    let mut names = text.trim_end_matches('\0').split(',').map(|name| Wrap::from_name(name.trim()).unwrap_or_default());
+    let s = names.next().unwrap_or_default();
+    [s, names.next().unwrap_or(s)]
+}
+
+/// The order of channels that shaders count in: red, green, blue, alpha, then the others by name.
+fn rank(name: &str) -> (usize, String) {
+    let last = name.rsplit('.').next().unwrap_or(name);
+    let known = [["R", "r", "red", "Y"], ["G", "g", "green", "RY"], ["B", "b", "blue", "BY"], ["A", "a", "alpha", "Alpha"]];
+    let at = known.iter().position(|names| names.contains(&last)).unwrap_or(known.len());
+    (at, name.to_owned())
+}
+
+fn read_exr(path: &Path) -> Result<Texture, String> {
+    use exr::ReadChannels;
+    use exr::ReadLayers;
+    let image = exr::read().no_deep_data().all_resolution_levels().all_channels().first_valid_layer().all_attributes();
+    let image = image.from_file(path).map_err(|error| error.to_string())?;
+    let layer = image.layer_data;
+    let size = [layer.size.0, layer.size.1];
+    let mut channels: Vec<_> = layer.channel_data.list.into_iter().collect();
+    channels.sort_by_key(|channel| rank(&channel.name.to_string()));
+    let count = channels.len();
+    let pyramids: Vec<Vec<exr::FlatSamples>> = channels
+        .into_iter()
+        .map(|channel| match channel.sample_data {
+            exr::Levels::Singular(samples) => vec![samples],
+            exr::Levels::Mip { level_data, .. } => level_data,
+            exr::Levels::Rip { level_data, .. } => level_data.map_data.into_iter().take(1).collect(),
+        })
+        .collect();
+    let mut levels = Vec::new();
+    for number in 0..pyramids.iter().map(Vec::len).min().unwrap_or(0) {
+        let [width, height] = size.map(|side| (side >> number).max(1));
+        let planes: Vec<Vec<f32>> = pyramids.iter().map(|pyramid| pyramid[number].values_as_f32().collect()).collect();
+        if planes.iter().any(|plane| plane.len() != width * height) {
+            break;
+        }
+        let rows = (0..width * height).flat_map(|at| planes.iter().map(move |plane| plane[at])).collect();
+        levels.push(Level::of_rows(width, height, count, &Texels::Floats(rows)));
+    }
+    if levels.is_empty() {
+        return Err("it has no texels".to_owned());
+    }
+    let wrap = image.attributes.other.iter().chain(&layer.attributes.other).find_map(|(name, value)| match value {
+        exr::AttributeValue::Text(text) if name.to_string() == "wrapmodes" => Some(wrap_modes(&text.to_string())),
+        _ => None,
+    });
+    Ok(Texture::of_levels(levels, count).with_wrap(wrap.unwrap_or_default()))
+}

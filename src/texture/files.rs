@@ -1,0 +1,84 @@
+//! The textures of a session: found in folders, read once, held while the session lasts.
+
+use super::Texture;
+use super::file::{TextureError, read};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
+
+/// A texture, or why there is none; the same answer each time.
+type Entry = Result<Arc<Texture>, TextureError>;
+
+/// Textures by name. Many threads ask at the same time; a file is read by the first that does.
+#[derive(Debug)]
+pub struct TextureFiles {
+    folders: Vec<PathBuf>,
+    budget: u64,
+    used: AtomicU64,
+    known: RwLock<HashMap<String, Entry>>,
+    reading: Mutex<()>,
+}
+
+impl TextureFiles {
+    /// Textures of these folders, looked in one after the other, and of the working folder; those of `TEXTUREPATH` follow.
+    pub fn new(folders: Vec<PathBuf>) -> Self {
+        let mut folders = folders;
+        if let Some(path) = std::env::var_os("TEXTUREPATH") {
+            folders.extend(std::env::split_paths(&path));
+        }
+        let (used, known, reading) = (AtomicU64::new(0), RwLock::default(), Mutex::default());
+        TextureFiles { folders, budget: default_budget(), used, known, reading }
+    }
+
+    /// Limits the bytes of all textures together; by default half of the machine's memory.
+    pub fn with_budget(mut self, bytes: u64) -> Self {
+        self.budget = bytes;
+        self
+    }
+
+    /// The texture of a name.
+    ///
+    /// # Errors
+    /// It is not found, cannot be read, or does not fit.
+    pub fn get(&self, name: &str) -> Result<Arc<Texture>, TextureError> {
+        if let Some(known) = self.known.read().unwrap_or_else(PoisonError::into_inner).get(name) {
+            return known.clone();
+        }
+        let _turn = self.reading.lock().unwrap_or_else(PoisonError::into_inner);
+        // Another thread may have read it while this one waited.
+        if let Some(known) = self.known.read().unwrap_or_else(PoisonError::into_inner).get(name) {
+            return known.clone();
+        }
+        let entry = self.load(name);
+        self.known.write().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned(), entry.clone());
+        entry
+    }
+
+    fn load(&self, name: &str) -> Entry {
+        let path = self.find(name).ok_or_else(|| TextureError::NotFound { name: name.to_owned() })?;
+        let left = self.budget.saturating_sub(self.used.load(Ordering::Relaxed));
+        let texture = read(&path, left)?;
+        self.used.fetch_add(texture.resident().1 as u64, Ordering::Relaxed);
+        Ok(Arc::new(texture))
+    }
+
+    fn find(&self, name: &str) -> Option<PathBuf> {
+        let here = Path::new(name);
+        let beside = self.folders.iter().map(|folder| folder.join(name));
+        std::iter::once(here.to_owned()).chain(beside).find(|path| !name.is_empty() && path.is_file())
+    }
+
+    /// Is there such a file?
+    pub fn exists(&self, name: &str) -> bool {
+        self.find(name).is_some()
+    }
+}
+
+/// Half of the machine's memory where that can be told, else 4 GB.
+fn default_budget() -> u64 {
+    let text = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"));
+    let kilobytes: Option<u64> = line.and_then(|line| line.trim().trim_end_matches(" kB").parse().ok());
+    kilobytes.map_or(4 << 30, |kilobytes| kilobytes * 512)
+}

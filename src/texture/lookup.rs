@@ -1,0 +1,250 @@
+//! Looking a texture up: the ellipse that a pixel covers, probes along its long axis, and two levels of the pyramid.
+//!
+//! Decision (2026-11-29): up to 32 probes with the weights of a Gaussian along the long axis, each of them bilinear in two levels that
+//! follow the short axis, and bicubic where the texture is magnified, because against a Gaussian over the ellipse summed in f64 the error of
+//! oblique stripes is a small part of that of one trilinear probe, which blurs by the long axis, and a look-up that is not oblique costs
+//! one probe; instead of summing every texel of the ellipse (Heckbert 1989), whose cost grows with the ellipse.
+
+use super::wrap::Wrap;
+use super::{Level, Texture};
+use crate::math::elementary::{exp, log2};
+
+/// The most probes of a look-up.
+const MOST_PROBES: f32 = 32.0;
+
+/// How texels are joined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The nearest one.
+    Closest,
+    /// Bilinear.
+    Linear,
+    /// Bicubic, by uniform B-splines.
+    Cubic,
+    /// Bicubic where the texture is magnified, else bilinear.
+    #[default]
+    Smart,
+}
+
+impl Interpolation {
+    /// The one of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Some(match name {
+            "closest" => Interpolation::Closest,
+            "linear" | "bilinear" => Interpolation::Linear,
+            "cubic" | "bicubic" => Interpolation::Cubic,
+            "smartcubic" | "smartbicubic" => Interpolation::Smart,
+            _ => return None,
+        })
+    }
+}
+
+/// How a texture is looked up.
+#[derive(Clone, Copy, Debug)]
+pub struct Lookup {
+    /// What it is outside, along s and t; the file's own where that is nothing.
+    pub wrap: [Option<Wrap>; 2],
+    /// How texels are joined.
+    pub interpolation: Interpolation,
+    /// Factors of the ellipse along s and t.
+    pub width: [f32; 2],
+    /// What is added to the ellipse, in units of s and t.
+    pub blur: [f32; 2],
+    /// The first channel that is wanted.
+    pub first: u32,
+    /// What channels are that there are not.
+    pub fill: f32,
+}
+
+impl Default for Lookup {
+    fn default() -> Self {
+        let interpolation = Interpolation::default();
+        Lookup { wrap: [None; 2], interpolation, width: [1.0; 2], blur: [0.0; 2], first: 0, fill: 0.0 }
+    }
+}
+
+/// Four channels and how they change along s and t.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// The channels.
+    pub value: [f32; 4],
+    /// Their change a unit of s.
+    pub ds: [f32; 4],
+    /// Their change a unit of t.
+    pub dt: [f32; 4],
+}
+
+impl Sample {
+    /// Adds a part of the difference of two samples; of equal ones nothing, to the last bit.
+    fn add(&mut self, part: f32, from: &Sample, to: &Sample) {
+        for c in 0..4 {
+            self.value[c] += part * (to.value[c] - from.value[c]);
+            self.ds[c] += part * (to.ds[c] - from.ds[c]);
+            self.dt[c] += part * (to.dt[c] - from.dt[c]);
+        }
+    }
+}
+
+/// The ellipse that a pixel covers, in texels of the finest level.
+struct Ellipse {
+    /// The long axis as a step of s and t.
+    major: [f32; 2],
+    /// Half lengths in texels.
+    lengths: [f32; 2],
+}
+
+impl Texture {
+    /// Looks up at (s, t), with t = 0 at the top; `slopes` are ds/dx, dt/dx, ds/dy, dt/dy of a pixel. Coordinates that are not finite give the
+    /// fill.
+    pub fn lookup(&self, s: f32, t: f32, slopes: [f32; 4], how: &Lookup) -> Sample {
+        let sound = |x: f32| if x.is_finite() { x } else { 0.0 };
+        if !s.is_finite() || !t.is_finite() {
+            return Sample { value: [how.fill; 4], ..Sample::default() };
+        }
+        let ellipse = self.ellipse(slopes.map(sound), how);
+        let [long, short] = ellipse.lengths;
+        // A pixel is two half axes wide, and a texel one: below that there is nothing to filter.
+        let short = short.max(long / MOST_PROBES).max(0.5);
+        let level = log2(2.0 * short).max(0.0);
+        let magnified = long <= 0.5;
+        let cubic = match how.interpolation {
+            Interpolation::Cubic => true,
+            Interpolation::Smart => magnified,
+            Interpolation::Closest | Interpolation::Linear => false,
+        };
+        let center = self.at_level(s, t, level, cubic, how);
+        let probes = (long / short).min(MOST_PROBES).ceil();
+        if probes <= 1.0 {
+            return center;
+        }
+        self.along(s, t, (level, cubic), &ellipse, probes, how, center)
+    }
+
+    /// Probes along the long axis, weighed by a Gaussian that ends at its ends; what lies within a probe's own width of them is left to it.
+    fn along(
+        &self,
+        s: f32,
+        t: f32,
+        (level, cubic): (f32, bool),
+        ellipse: &Ellipse,
+        probes: f32,
+        how: &Lookup,
+        center: Sample,
+    ) -> Sample {
+        let count = probes as u32;
+        let place = |i: u32| (2.0 * i as f32 + 1.0) / probes - 1.0;
+        let weight = |x: f32| exp(-2.0 * x * x);
+        let total: f32 = (0..count).map(|i| weight(place(i))).sum();
+        let mut out = center;
+        for i in 0..count {
+            let x = place(i);
+            let probe = self.at_level(s + x * ellipse.major[0], t + x * ellipse.major[1], level, cubic, how);
+            out.add(weight(x) / total, &center, &probe);
+        }
+        out
+    }
+
+    /// The axes of the ellipse: the singular values of the matrix of slopes, in texels, halved since a pixel reaches half a step to
+    /// either side.
+    fn ellipse(&self, slopes: [f32; 4], how: &Lookup) -> Ellipse {
+        let size = [self.size[0] as f32, self.size[1] as f32];
+        let [dsdx, dtdx, dsdy, dtdy] = slopes;
+        let (ws, wt) = (how.width[0] * size[0], how.width[1] * size[1]);
+        let (a, b, c, d) = (dsdx * ws, dtdx * wt, dsdy * ws, dtdy * wt);
+        // The matrix of second moments of the ellipse, with the blur's added.
+        let blur = [how.blur[0] * size[0], how.blur[1] * size[1]];
+        let (p, q, r) = (a * a + c * c + blur[0] * blur[0], a * b + c * d, b * b + d * d + blur[1] * blur[1]);
+        let (mean, half) = (0.5 * (p + r), 0.5 * (p - r));
+        let root = (half * half + q * q).sqrt();
+        let (large, small) = (mean + root, (mean - root).max(0.0));
+        let (long, short) = (0.5 * large.sqrt(), 0.5 * small.sqrt());
+        // The eigenvector of the larger value, from whichever row is the longer.
+        let axis = if half >= 0.0 { [half + root, q] } else { [q, root - half] };
+        let length = (axis[0] * axis[0] + axis[1] * axis[1]).sqrt();
+        let unit = if length > 0.0 { [axis[0] / length, axis[1] / length] } else { [1.0, 0.0] };
+        Ellipse { major: [unit[0] * long / size[0], unit[1] * long / size[1]], lengths: [long, short] }
+    }
+
+    /// One probe between two levels.
+    fn at_level(&self, s: f32, t: f32, level: f32, cubic: bool, how: &Lookup) -> Sample {
+        let last = self.level_count() - 1;
+        let level = level.min(last as f32);
+        let (lower, part) = (level as usize, level - level.floor());
+        let join = |number: usize| self.join(self.level(number), s, t, cubic, how);
+        let mut out = join(lower);
+        if part > 0.0 && lower < last {
+            let (fine, coarse) = (out, join(lower + 1));
+            out.add(part, &fine, &coarse);
+        }
+        out
+    }
+
+    fn join(&self, level: &Level, s: f32, t: f32, cubic: bool, how: &Lookup) -> Sample {
+        let wrap = [0, 1].map(|axis| how.wrap[axis].unwrap_or(self.wrap[axis]));
+        let (width, height) = (level.width() as f32, level.height() as f32);
+        let first = how.first as usize;
+        let read = |x: i32, y: i32| {
+            let mut texel = [how.fill; 4];
+            match (wrap[0].texel(x, level.width()), wrap[1].texel(y, level.height())) {
+                (Some(x), Some(y)) => level.read(x, y, first, &mut texel),
+                _ => texel = [0.0; 4],
+            }
+            texel
+        };
+        // Beyond this a float has no fraction, and a texel no number.
+        let inside = |x: f32| x.clamp(-1e9, 1e9);
+        let (x, y) = (inside(s * width), inside(t * height));
+        if how.interpolation == Interpolation::Closest {
+            return Sample { value: read(x.floor() as i32, y.floor() as i32), ..Sample::default() };
+        }
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let (fx, fy) = (x - left, y - top);
+        let corner = (left as i32, top as i32);
+        let mut out = if cubic { joined_cubic(read, corner, fx, fy) } else { joined_linear(read, corner, fx, fy) };
+        out.ds.iter_mut().for_each(|x| *x *= width);
+        out.dt.iter_mut().for_each(|x| *x *= height);
+        out
+    }
+}
+
+#[inline(always)]
+fn joined_linear(read: impl Fn(i32, i32) -> [f32; 4], (x, y): (i32, i32), fx: f32, fy: f32) -> Sample {
+    let (a, b, c, d) = (read(x, y), read(x + 1, y), read(x, y + 1), read(x + 1, y + 1));
+    let mut out = Sample::default();
+    for i in 0..4 {
+        let (top, bottom) = (a[i] + fx * (b[i] - a[i]), c[i] + fx * (d[i] - c[i]));
+        out.value[i] = top + fy * (bottom - top);
+        out.ds[i] = (b[i] - a[i]) + fy * ((d[i] - c[i]) - (b[i] - a[i]));
+        out.dt[i] = bottom - top;
+    }
+    out
+}
+
+/// The weights of a uniform cubic B-spline and their slopes.
+fn spline(f: f32) -> [[f32; 4]; 2] {
+    let g = 1.0 - f;
+    let (f2, g2) = (f * f, g * g);
+    let weights = [g2 * g / 6.0, 2.0 / 3.0 - f2 * (1.0 - 0.5 * f), 2.0 / 3.0 - g2 * (1.0 - 0.5 * g), f2 * f / 6.0];
+    let slopes = [-0.5 * g2, f * (1.5 * f - 2.0), g * (2.0 - 1.5 * g), 0.5 * f2];
+    [weights, slopes]
+}
+
+fn joined_cubic(read: impl Fn(i32, i32) -> [f32; 4], (x, y): (i32, i32), fx: f32, fy: f32) -> Sample {
+    let ([wx, sx], [wy, sy]) = (spline(fx), spline(fy));
+    // Sums of differences from one texel, so that a constant stays one to the last bit.
+    let base = read(x, y);
+    let mut out = Sample { value: base, ..Sample::default() };
+    for row in 0..4 {
+        for column in 0..4 {
+            let texel = read(x + column as i32 - 1, y + row as i32 - 1);
+            for i in 0..4 {
+                let difference = texel[i] - base[i];
+                out.value[i] += wx[column] * wy[row] * difference;
+                out.ds[i] += sx[column] * wy[row] * difference;
+                out.dt[i] += wx[column] * sy[row] * difference;
+            }
+        }
+    }
+    out
+}
