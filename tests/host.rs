@@ -150,7 +150,15 @@ fn reports_come_in_parts() {
     machine.shade(&group, &points(4));
     let heard = host.heard.lock().unwrap();
     let [warning] = heard.as_slice() else { panic!("{heard:?}") };
-    let place = ReportPlace { shader: "s".into(), layer: "upper".into(), file: "h.osl".into(), line: 2, column: 16, word: "warning".into(), layer_number: 0 };
+    let place = ReportPlace {
+        shader: "s".into(),
+        layer: "upper".into(),
+        file: "h.osl".into(),
+        line: 2,
+        column: 16,
+        word: "warning".into(),
+        layer_number: 0,
+    };
     assert_eq!((&*warning.place, warning.lane, warning.text.as_str()), (&place, 3, "w 0.3"));
     assert_eq!(warning.to_string(), "h.osl:2:16: w 0.3");
     let left = machine.take_reports();

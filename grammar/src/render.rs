@@ -60,7 +60,8 @@ impl Sources {
             Some(at) => format!("\"file\":{},\"line\":{},\"column\":{}", json(&at.file), at.line, at.column),
             None => "\"file\":null,\"line\":null,\"column\":null".to_owned(),
         };
-        let also = diagnostic.secondary.iter().map(|(span, text)| format!("{{{},\"text\":{}}}", place(*span), json(text)));
+        let also =
+            diagnostic.secondary.iter().map(|(span, text)| format!("{{{},\"text\":{}}}", place(*span), json(text)));
         let also: Vec<String> = also.collect();
         out.push_str(&format!(
             "{{\"severity\":\"{severity}\",\"code\":\"{}\",\"message\":{},{},\"label\":{},\"help\":{},\"also\":[{}]}}\n",

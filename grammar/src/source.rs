@@ -109,7 +109,13 @@ impl SourceTable {
     /// A table with nothing but the scratch file.
     pub(crate) fn new() -> Self {
         let scratch = SourceFile::new("<made by macros>", Arc::from(""), None);
-        SourceTable { files: vec![scratch], expanded: Vec::new(), calls: Vec::new(), scratch: String::new(), quiet: Vec::new() }
+        SourceTable {
+            files: vec![scratch],
+            expanded: Vec::new(),
+            calls: Vec::new(),
+            scratch: String::new(),
+            quiet: Vec::new(),
+        }
     }
 
     /// The text of a place.

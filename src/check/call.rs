@@ -197,7 +197,9 @@ impl Checker<'_> {
         let ExprKind::String(name) = &token.kind else {
             if !known.is_empty() {
                 let message = format!("an option of `{function}` whose name is computed has no effect");
-                self.report(Diagnostic::warning("W0506", token.span, message).help("write its name as a literal string"));
+                self.report(
+                    Diagnostic::warning("W0506", token.span, message).help("write its name as a literal string"),
+                );
             }
             return String::new();
         };
@@ -322,8 +324,28 @@ fn wrong_choice(param: &ParamSpec, value: &Expr) -> Option<String> {
 
 /// The options of `texture` and `environment`.
 const TEXTURE_OPTIONS: &[&str] = &[
-    "alpha", "blur", "colorspace", "errormessage", "fill", "firstchannel", "interp", "missingalpha", "missingcolor", "rblur", "rwidth", "rwrap",
-    "sblur", "subimage", "swidth", "swrap", "tblur", "time", "twidth", "twrap", "width", "wrap",
+    "alpha",
+    "blur",
+    "colorspace",
+    "errormessage",
+    "fill",
+    "firstchannel",
+    "interp",
+    "missingalpha",
+    "missingcolor",
+    "rblur",
+    "rwidth",
+    "rwrap",
+    "sblur",
+    "subimage",
+    "swidth",
+    "swrap",
+    "tblur",
+    "time",
+    "twidth",
+    "twrap",
+    "width",
+    "wrap",
 ];
 
 /// Does the function write the value of an option?

@@ -97,11 +97,8 @@ fn read(path: &Path) -> Result<(String, Vec<u8>), String> {
     let standard = path == Path::new("-");
     let name = if standard { "<stdin>".to_owned() } else { path.display().to_string() };
     let mut bytes = Vec::new();
-    let read = if standard {
-        std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
-    } else {
-        std::fs::read(path)
-    };
+    let read =
+        if standard { std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes) } else { std::fs::read(path) };
     read.map(|bytes| (name.clone(), bytes)).map_err(|error| format!("{name}: error: cannot be read: {error}\n"))
 }
 
@@ -113,7 +110,8 @@ fn one(args: &CheckArgs, compiler: &Compiler, name: &str, bytes: &[u8]) -> Resul
         put(args.output.as_deref(), &output)?;
         report(args, diagnostics, &sources)
     } else {
-        let checked = if args.all_warnings { compiler.check_closely(name, bytes) } else { compiler.check_bytes(name, bytes) };
+        let checked =
+            if args.all_warnings { compiler.check_closely(name, bytes) } else { compiler.check_bytes(name, bytes) };
         depend(args, compiler, name, &checked.sources)?;
         report(args, checked.diagnostics, &checked.sources)
     };
@@ -164,5 +162,6 @@ fn put(file: Option<&Path>, text: &str) -> Result<(), Failure> {
         say(text);
         return Ok(());
     };
-    std::fs::write(file, text).map_err(|error| Failure::Usage(format!("{}: error: cannot be written: {error}", file.display())))
+    std::fs::write(file, text)
+        .map_err(|error| Failure::Usage(format!("{}: error: cannot be written: {error}", file.display())))
 }

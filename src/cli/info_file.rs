@@ -72,7 +72,10 @@ fn json_value(value: &Expr) -> String {
     let mut parts = Vec::new();
     match constants(value, &mut parts) {
         Some(()) => {
-            parts.iter_mut().filter(|part| ["inf", "-inf", "NaN"].contains(&part.as_str())).for_each(|part| *part = "null".into());
+            parts
+                .iter_mut()
+                .filter(|part| ["inf", "-inf", "NaN"].contains(&part.as_str()))
+                .for_each(|part| *part = "null".into());
             format!("[{}]", parts.join(","))
         }
         None => "null".to_owned(),

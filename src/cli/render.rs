@@ -12,6 +12,7 @@ use crate::render::{Explanation, Image, LightChoice, LightPoints, Progress, Rend
 use crate::scene::{Scene, ShaderFiles};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Arguments of `velour render`.
@@ -52,6 +53,9 @@ pub struct RenderArgs {
     /// Folders to look for shaders and meshes in, after the scene's own; separated by colons
     #[arg(long, value_name = "DIRS", value_delimiter = ':')]
     path: Vec<PathBuf>,
+    /// Megabytes that textures may take together [default: half of the memory]
+    #[arg(long, value_name = "MB")]
+    texture_memory: Option<u64>,
     /// How a base is scaled under its layer: min, view or kelemen
     #[arg(long, default_value = "min")]
     layering: Layering,
@@ -160,7 +164,10 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     args.testrender.note();
     let compiler = ShaderFiles::new(args.compile.compiler()?).lenient(!args.strict);
-    let scene = Scene::load(&args.scene, &args.path, &compiler).map_err(Failure::of_scene)?;
+    let mut scene = Scene::load(&args.scene, &args.path, &compiler).map_err(Failure::of_scene)?;
+    if let Some(megabytes) = args.texture_memory {
+        scene.textures = Arc::new(scene.textures.limited(megabytes << 20));
+    }
     for warning in &scene.warnings {
         tell(&format!("{warning}\n"));
     }

@@ -2,11 +2,12 @@
 
 use super::report::ReportPlace;
 use crate::closure::Library;
-use crate::ir::op::{Input, Reach};
+use crate::ir::op::{AttributeOf, Input, Reach, Routine};
 use crate::ir::program::*;
 use crate::ir::verify::{VerifyError, verify};
 use crate::lang::closures::{ClosureId, ClosureSpec, ClosureTable};
 use crate::lang::globals::Global;
+use crate::lang::symbols::Symbol;
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -111,6 +112,31 @@ impl Group {
             }
         };
         matches!(kind, Kind::Float | Kind::Int).then_some((count, kind == Kind::Int))
+    }
+
+    /// May the group ask for one of these attributes of what is shaded, or for its derivatives where `slopes` is true? A name that is
+    /// computed may be any.
+    pub fn asks_for(&self, names: &[&str], slopes: bool) -> bool {
+        let mut found = false;
+        visit_instrs(&self.program.body, &mut |instr| {
+            if let Instr::Call { routine: Routine::Attribute(query), src, .. } = instr {
+                let named = match self.program.constant(src[1]) {
+                    Some(Const::String(symbol)) => names.contains(&Symbol(symbol).text()),
+                    _ => true,
+                };
+                found |= query.of == AttributeOf::Attribute && named && (query.slopes || !slopes);
+            }
+        });
+        found
+    }
+
+    /// Does the group draw random numbers, which are of the point's place?
+    pub fn draws(&self) -> bool {
+        let mut found = false;
+        visit_instrs(&self.program.body, &mut |instr| {
+            found |= matches!(instr, Instr::Call { routine: Routine::Random(_), .. });
+        });
+        found
     }
 
     /// Is the register read by nothing but a move of floats that follows it in its block? The move may take its column, which the

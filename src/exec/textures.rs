@@ -65,6 +65,19 @@ impl Run<'_> {
         found
     }
 
+    /// Of a texture of many files one that there is, for what is asked of all of them.
+    fn any_tile(&mut self, symbol: i32) -> Found {
+        let name = self.tree.strings.text(Symbol(symbol)).to_owned();
+        let tiles = (0..100).filter(|_| is_tiled(&name)).map(|i| ((i % 10) as f32, (i / 10) as f32));
+        for tile in tiles.filter_map(|(u, v)| tile_name(&name, u, v)) {
+            let found = self.texture_of(&tile);
+            if found.is_ok() {
+                return found;
+            }
+        }
+        Err(format!("there is no tile of `{name}`"))
+    }
+
     fn how(&self, call: TextureCall, src: &[Reg], lane: usize) -> How {
         let at = Layout::of(call);
         let args = Lane { run: self, src, lane };
@@ -119,7 +132,7 @@ impl Run<'_> {
             self.regs.ints[ok.0 as usize][lane] = i32::from(found.is_ok());
             let text = found.err().unwrap_or_default();
             self.regs.ints[message.0 as usize][lane] = self.tree.strings.symbol(&text).0;
-            if !text.is_empty() && how.missing[0].is_none() {
+            if !text.is_empty() && !call.asks && how.missing.iter().all(Option::is_none) {
                 let reason = text.clone();
                 self.report_once(lane, span, Mistake::Texture { reason }, text);
             }
@@ -143,7 +156,10 @@ impl Run<'_> {
             }
             let args = Lane { run: self, src, lane };
             let (symbol, name, mut s, mut t) = (args.i(0), args.s(1).to_owned(), args.f(2), args.f(3));
-            let found = self.texture_at(symbol, &mut s, &mut t);
+            let mut found = self.texture_at(symbol, &mut s, &mut t);
+            if found.is_err() {
+                found = self.any_tile(symbol);
+            }
             let there = self.put_info(ty, &dst[1..], lane, &name, found.as_deref().ok());
             self.regs.ints[dst[0].0 as usize][lane] = i32::from(there);
         }
@@ -169,6 +185,7 @@ impl Run<'_> {
         };
         let text = match (name, ty) {
             ("type", AttributeType::Strings(1)) => "texture".to_owned(),
+            ("texturetype", AttributeType::Strings(1)) => "Plain Texture".to_owned(),
             ("textureformat", AttributeType::Strings(1)) => "Plain Texture".to_owned(),
             ("wrapmodes", AttributeType::Strings(1)) => texture.wrap().map(Wrap::name).join(","),
             _ => String::new(),
@@ -176,7 +193,9 @@ impl Run<'_> {
         let mean = texture.mean();
         let floats: Vec<f32> = match (name, ty) {
             ("channels", AttributeType::Floats(1)) => vec![channels as f32],
-            ("averagecolor", AttributeType::Floats(count)) => (0..count as usize).map(|c| mean.get(c).copied().unwrap_or(0.0)).collect(),
+            ("averagecolor", AttributeType::Floats(count)) => {
+                (0..count as usize).map(|c| mean.get(c).copied().unwrap_or(0.0)).collect()
+            }
             ("averagealpha", AttributeType::Floats(1)) if channels == 4 => vec![mean[3]],
             _ => Vec::new(),
         };
@@ -212,7 +231,13 @@ fn around(args: &Lane) -> ([f32; 2], [f32; 4]) {
 }
 
 /// The channels and alpha of a look-up, and how they change along x and y.
-fn sampled(texture: &Texture, place: [f32; 2], slopes: [f32; 4], how: &How, n: usize) -> ([f32; 4], [f32; 4], [f32; 4]) {
+fn sampled(
+    texture: &Texture,
+    place: [f32; 2],
+    slopes: [f32; 4],
+    how: &How,
+    n: usize,
+) -> ([f32; 4], [f32; 4], [f32; 4]) {
     let Sample { mut value, ds, dt } = texture.lookup(place[0], place[1], slopes, &how.lookup);
     let along = |x: f32, y: f32| -> [f32; 4] { std::array::from_fn(|c| ds[c] * x + dt[c] * y) };
     let (mut dx, mut dy) = (along(slopes[0], slopes[1]), along(slopes[2], slopes[3]));

@@ -95,6 +95,8 @@ pub struct TextureCall {
     pub environment: bool,
     /// See above.
     pub slopes: bool,
+    /// True where the shader takes what went wrong, so that nobody else need hear of it.
+    pub asks: bool,
 }
 
 impl TextureCall {
@@ -338,8 +340,12 @@ impl Routine {
                 let takes = smallvec![(String, 2), (Float, 2)];
                 Declaration { reach: Reach::Lane, ..pure(takes, smallvec![(Int, 1), ty.kind()]) }
             }
-            Routine::SetMessage(_) | Routine::GetMessage(_) | Routine::Random(_) | Routine::Trace => self.state_declaration(),
-            Routine::DictFind | Routine::DictFindBelow | Routine::DictNext | Routine::DictValue(_) => self.state_declaration(),
+            Routine::SetMessage(_) | Routine::GetMessage(_) | Routine::Random(_) | Routine::Trace => {
+                self.state_declaration()
+            }
+            Routine::DictFind | Routine::DictFindBelow | Routine::DictNext | Routine::DictValue(_) => {
+                self.state_declaration()
+            }
         }
     }
 

@@ -1,11 +1,13 @@
 //! What shaders may ask of the renderer beside their points: the camera's space and a few attributes.
 
 use super::settings::Settings;
-use crate::exec::{Attribute, PlainHost};
+use crate::exec::{Attribute, AttributeAnswer, AttributeRequest, Host, PlainHost, Points};
 use crate::ops::matrix::Matrix;
 use crate::scene::Camera;
+use crate::texture::{Texture, TextureFiles};
 use glam::Vec3;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// The version of the language, as `OSL_VERSION` gives it.
 const LANGUAGE_VERSION: i32 = 11600;
@@ -16,12 +18,45 @@ const CLIP: [f32; 2] = [0.1, 1000.0];
 ///
 /// Differs from OSL: testrender's camera space is the world's; here it is the camera's, with x to the right, y up, z
 /// forward and the eye at the origin. `fov` is the scene's own number, not the angle that the picture spans.
-pub fn host(camera: &Camera, settings: &Settings) -> PlainHost {
+pub fn host(camera: &Camera, settings: &Settings, textures: &Arc<TextureFiles>) -> RenderHost {
     let mut host = PlainHost::default();
     host.spaces.insert("camera".to_owned(), camera_to_common(camera));
     let attributes = camera_attributes([settings.width, settings.height], camera.fov, CLIP, [0.0; 2]);
     host.attributes.extend(attributes);
-    host
+    RenderHost { plain: host, textures: textures.clone() }
+}
+
+/// What shaders of a scene may ask for: tables of spaces and attributes, what each point carries, and the scene's textures.
+#[derive(Debug)]
+pub struct RenderHost {
+    plain: PlainHost,
+    textures: Arc<TextureFiles>,
+}
+
+impl Host for RenderHost {
+    fn space(&self, name: &str, points: &Points) -> Option<Matrix> {
+        self.plain.space(name, points)
+    }
+
+    fn attribute(&self, asked: &AttributeRequest<'_>, answer: &mut AttributeAnswer<'_>) {
+        let points = asked.points;
+        let carried = match asked.name {
+            "s" => Some((&points.u, &points.dudx, &points.dudy)),
+            "t" => Some((&points.v, &points.dvdx, &points.dvdy)),
+            _ => None,
+        };
+        let Some((value, dx, dy)) = carried.filter(|_| asked.object.is_empty()) else {
+            return self.plain.attribute(asked, answer);
+        };
+        for &lane in answer.lanes() {
+            answer.floats(lane, &[value[lane]]);
+            answer.slopes(lane, &[dx[lane]], &[dy[lane]]);
+        }
+    }
+
+    fn texture(&self, name: &str) -> Result<Arc<Texture>, String> {
+        self.textures.get(name).map_err(|error| error.to_string())
+    }
 }
 
 /// What every renderer answers of its camera: a picture of so many pixels, the angle in degrees, what is between two planes, and

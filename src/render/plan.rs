@@ -30,12 +30,13 @@ impl Needs {
     pub fn of(group: &Group) -> Self {
         let reads = |globals: &[Global]| globals.iter().any(|g| group.reads(*g));
         let derives = |globals: &[Global]| globals.iter().any(|g| group.reads_derivative(*g));
+        let (carried, carried_slopes) = (group.asks_for(&["s", "t"], false), group.asks_for(&["s", "t"], true));
         Needs {
-            position: reads(&[Global::P, Global::Ps]),
-            uv: reads(&[Global::U, Global::V]),
+            position: reads(&[Global::P, Global::Ps]) || group.draws(),
+            uv: reads(&[Global::U, Global::V]) || carried,
             tangents: reads(&[Global::DPdu, Global::DPdv]),
             position_derivatives: derives(&[Global::P, Global::Ps]),
-            uv_derivatives: derives(&[Global::U, Global::V]),
+            uv_derivatives: derives(&[Global::U, Global::V]) || carried_slopes,
             direction_derivatives: derives(&[Global::I]),
         }
     }

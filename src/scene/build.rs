@@ -14,6 +14,7 @@ use super::source::within;
 use super::spec::{Statements, parse_group};
 use super::weave::Weave;
 use super::xml::Element;
+use crate::texture::TextureFiles;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -49,6 +50,7 @@ impl<'c> Builder<'c> {
             geometry: Arc::default(),
             background: None,
             warnings: Vec::new(),
+            textures: Arc::new(TextureFiles::new(folders.clone())),
         };
         Builder {
             scene,
@@ -403,7 +405,14 @@ fn group_child(
 
 /// `int 3`, `float .5`, `color 1 2 3` and so on; anything else is a string, as testrender reads it.
 fn parameter_value(name: &str, text: &str, place: Place) -> ParamValue {
-    let plain = |kind, values| ParamValue { kind, array: None, name: name.to_owned(), values, hints: Hints::default(), place: place.clone() };
+    let plain = |kind, values| ParamValue {
+        kind,
+        array: None,
+        name: name.to_owned(),
+        values,
+        hints: Hints::default(),
+        place: place.clone(),
+    };
     let (word, rest) = text.split_once(' ').unwrap_or(("", text));
     let number = rest.trim();
     if word == "int"

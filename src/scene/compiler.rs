@@ -115,7 +115,9 @@ fn declares_in(folder: &Path, name: &str) -> Option<PathBuf> {
     let entries = std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path());
     let mut files: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|e| e == "osl")).collect();
     files.sort();
-    files.into_iter().find(|path| std::fs::read(path).is_ok_and(|bytes| declares(&String::from_utf8_lossy(&bytes), name)))
+    files
+        .into_iter()
+        .find(|path| std::fs::read(path).is_ok_and(|bytes| declares(&String::from_utf8_lossy(&bytes), name)))
 }
 
 /// Does a text say `shader NAME`, or another kind of shader, in words that follow each other?

@@ -4,6 +4,7 @@ use super::camera::Camera;
 use super::error::Place;
 use super::geometry::Geometry;
 use crate::exec;
+use crate::texture::TextureFiles;
 use std::sync::Arc;
 
 /// What the scene's `<Option>`s ask for; they win over the command line, as in testrender.
@@ -64,4 +65,6 @@ pub struct Scene {
     pub background: Option<Background>,
     /// What is odd but no mistake.
     pub warnings: Vec<String>,
+    /// The textures that its shaders may name; none is read before a shader asks for it.
+    pub textures: Arc<TextureFiles>,
 }

@@ -39,7 +39,9 @@ impl fmt::Display for TextureError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             TextureError::NotFound { name } => write!(f, "there is no texture `{name}`"),
-            TextureError::Unreadable { path, reason } => write!(f, "the texture {} cannot be read: {reason}", path.display()),
+            TextureError::Unreadable { path, reason } => {
+                write!(f, "the texture {} cannot be read: {reason}", path.display())
+            }
             TextureError::TooLarge { path, budget } => {
                 let megabytes = budget >> 20;
                 write!(f, "the texture {} does not fit into the {megabytes} MB that textures may have", path.display())
@@ -79,7 +81,11 @@ fn sized(width: usize, height: usize, bytes: usize, budget: u64) -> Result<(), S
         return Err(format!("it has {width} x {height} texels"));
     }
     let all = width as u64 * height as u64 * bytes as u64;
-    if all > budget { Err(format!("it takes {} MB, and textures may have {} MB", all >> 20, budget >> 20)) } else { Ok(()) }
+    if all > budget {
+        Err(format!("it takes {} MB, and textures may have {} MB", all >> 20, budget >> 20))
+    } else {
+        Ok(())
+    }
 }
 
 fn read_image(path: &Path, budget: u64) -> Result<Texture, String> {
@@ -132,7 +138,9 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
             DecodingResult::F32(all) => Texels::Floats(all),
             DecodingResult::F64(all) => Texels::Floats(all.into_iter().map(|x| x as f32).collect()),
             DecodingResult::F16(all) => Texels::Floats(all.into_iter().map(|x| x.to_f32()).collect()),
-            DecodingResult::U32(all) => Texels::Floats(all.into_iter().map(|x| (f64::from(x) / 4_294_967_295.0) as f32).collect()),
+            DecodingResult::U32(all) => {
+                Texels::Floats(all.into_iter().map(|x| (f64::from(x) / 4_294_967_295.0) as f32).collect())
+            }
             _ => return Err("its texels are of a kind that no texture has".to_owned()),
         };
         let count = match &rows {
@@ -171,7 +179,8 @@ fn wrap_modes(text: &str) -> [Wrap; 2] {
 /// The order of channels that shaders count in: red, green, blue, alpha, then the others by name.
 fn rank(name: &str) -> (usize, String) {
     let last = name.rsplit('.').next().unwrap_or(name);
-    let known = [["R", "r", "red", "Y"], ["G", "g", "green", "RY"], ["B", "b", "blue", "BY"], ["A", "a", "alpha", "Alpha"]];
+    let known =
+        [["R", "r", "red", "Y"], ["G", "g", "green", "RY"], ["B", "b", "blue", "BY"], ["A", "a", "alpha", "Alpha"]];
     let at = known.iter().position(|names| names.contains(&last)).unwrap_or(known.len());
     (at, name.to_owned())
 }

@@ -37,6 +37,12 @@ impl TextureFiles {
         self
     }
 
+    /// Those of the same folders with another limit, none of them read yet.
+    pub fn limited(&self, bytes: u64) -> Self {
+        let (used, known, reading) = (AtomicU64::new(0), RwLock::default(), Mutex::default());
+        TextureFiles { folders: self.folders.clone(), budget: bytes, used, known, reading }
+    }
+
     /// The texture of a name.
     ///
     /// # Errors

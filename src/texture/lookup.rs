@@ -1,16 +1,16 @@
 //! Looking a texture up: the ellipse that a pixel covers, probes along its long axis, and two levels of the pyramid.
 //!
-//! Decision (2026-11-29): up to 32 probes with the weights of a Gaussian along the long axis, each of them bilinear in two levels that
-//! follow the short axis, and bicubic where the texture is magnified, because against a Gaussian over the ellipse summed in f64 the error of
+//! Decision (2026-11-29): probes with the weights of a Gaussian along the long axis (McCormack, Perry, Farkas and Jouppi 1999, and as
+//! OpenImageIO has them), each of them bilinear in two levels that follow the short axis, and bicubic in the finest, because against a Gaussian over the ellipse summed in f64 the error of
 //! oblique stripes is a small part of that of one trilinear probe, which blurs by the long axis, and a look-up that is not oblique costs
 //! one probe; instead of summing every texel of the ellipse (Heckbert 1989), whose cost grows with the ellipse.
 
 use super::wrap::Wrap;
 use super::{Level, Texture};
-use crate::math::elementary::{exp, log2};
+use crate::math::elementary::exp;
 
-/// The most probes of a look-up.
-const MOST_PROBES: f32 = 32.0;
+/// How much longer than wide an ellipse may be; a longer one is made wider.
+const MOST_ASPECT: f32 = 32.0;
 
 /// How texels are joined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum Interpolation {
     Linear,
     /// Bicubic, by uniform B-splines.
     Cubic,
-    /// Bicubic where the texture is magnified, else bilinear.
+    /// Bicubic in the finest level, else bilinear.
     #[default]
     Smart,
 }
@@ -85,11 +85,11 @@ impl Sample {
     }
 }
 
-/// The ellipse that a pixel covers, in texels of the finest level.
+/// The ellipse that a pixel covers.
 struct Ellipse {
-    /// The long axis as a step of s and t.
+    /// The long half axis as a step of s and t.
     major: [f32; 2],
-    /// Half lengths in texels.
+    /// Half axes in texels of the finest level.
     lengths: [f32; 2],
 }
 
@@ -103,79 +103,85 @@ impl Texture {
         }
         let ellipse = self.ellipse(slopes.map(sound), how);
         let [long, short] = ellipse.lengths;
-        // A pixel is two half axes wide, and a texel one: below that there is nothing to filter.
-        let short = short.max(long / MOST_PROBES).max(0.5);
-        let level = log2(2.0 * short).max(0.0);
-        let magnified = long <= 0.5;
-        let cubic = match how.interpolation {
-            Interpolation::Cubic => true,
-            Interpolation::Smart => magnified,
-            Interpolation::Closest | Interpolation::Linear => false,
-        };
-        let center = self.at_level(s, t, level, cubic, how);
-        let probes = (long / short).min(MOST_PROBES).ceil();
-        if probes <= 1.0 {
-            return center;
+        let short = short.max(long / MOST_ASPECT);
+        let probes = (2.0 * long / short - 1.0).clamp(1.0, 2.0 * MOST_ASPECT) as u32;
+        let (level, part) = self.level_of(short);
+        if probes <= 1 || long <= 1.0 {
+            return self.at_level(s, t, (level, part), how);
         }
-        self.along(s, t, (level, cubic), &ellipse, probes, how, center)
-    }
-
-    /// Probes along the long axis, weighed by a Gaussian that ends at its ends; what lies within a probe's own width of them is left to it.
-    fn along(
-        &self,
-        s: f32,
-        t: f32,
-        (level, cubic): (f32, bool),
-        ellipse: &Ellipse,
-        probes: f32,
-        how: &Lookup,
-        center: Sample,
-    ) -> Sample {
-        let count = probes as u32;
-        let place = |i: u32| (2.0 * i as f32 + 1.0) / probes - 1.0;
-        let weight = |x: f32| exp(-2.0 * x * x);
-        let total: f32 = (0..count).map(|i| weight(place(i))).sum();
+        // The outermost probes end where the ellipse does.
+        let reach = 1.0 - short / long;
+        let step = ellipse.major.map(|axis| axis * reach);
+        let place = |i: u32| (2.0 * i as f32 + 1.0) / probes as f32 - 1.0;
+        let weight = |i: u32| {
+            let x = 0.5 * place(i) / reach;
+            exp(-2.0 * x * x)
+        };
+        let total: f32 = (0..probes).map(weight).sum();
+        let center = self.at_level(s, t, (level, part), how);
         let mut out = center;
-        for i in 0..count {
+        for i in 0..probes {
             let x = place(i);
-            let probe = self.at_level(s + x * ellipse.major[0], t + x * ellipse.major[1], level, cubic, how);
-            out.add(weight(x) / total, &center, &probe);
+            let probe = self.at_level(s + x * step[0], t + x * step[1], (level, part), how);
+            out.add(weight(i) / total, &center, &probe);
         }
         out
     }
 
-    /// The axes of the ellipse: the singular values of the matrix of slopes, in texels, halved since a pixel reaches half a step to
-    /// either side.
+    /// The coarser of the two levels between whose texels a half axis lies, and its part: all of it where the half axis is a texel of it.
+    fn level_of(&self, half_axis: f32) -> (usize, f32) {
+        let last = self.level_count() - 1;
+        let mut texels = half_axis;
+        for level in 0..=last {
+            if texels <= 1.0 {
+                return if level == 0 { (0, 1.0) } else { (level, (2.0 * texels - 1.0).clamp(0.0, 1.0)) };
+            }
+            texels *= 0.5;
+        }
+        (last, 1.0)
+    }
+
+    /// The half axes of the ellipse: the singular values of the matrix of slopes, in texels. Blur adds to them as it does to the axes of a
+    /// box that it is seen along.
     fn ellipse(&self, slopes: [f32; 4], how: &Lookup) -> Ellipse {
         let size = [self.size[0] as f32, self.size[1] as f32];
         let [dsdx, dtdx, dsdy, dtdy] = slopes;
         let (ws, wt) = (how.width[0] * size[0], how.width[1] * size[1]);
         let (a, b, c, d) = (dsdx * ws, dtdx * wt, dsdy * ws, dtdy * wt);
-        // The matrix of second moments of the ellipse, with the blur's added.
-        let blur = [how.blur[0] * size[0], how.blur[1] * size[1]];
-        let (p, q, r) = (a * a + c * c + blur[0] * blur[0], a * b + c * d, b * b + d * d + blur[1] * blur[1]);
+        let (p, q, r) = (a * a + c * c, a * b + c * d, b * b + d * d);
         let (mean, half) = (0.5 * (p + r), 0.5 * (p - r));
         let root = (half * half + q * q).sqrt();
         let (large, small) = (mean + root, (mean - root).max(0.0));
-        let (long, short) = (0.5 * large.sqrt(), 0.5 * small.sqrt());
         // The eigenvector of the larger value, from whichever row is the longer.
         let axis = if half >= 0.0 { [half + root, q] } else { [q, root - half] };
         let length = (axis[0] * axis[0] + axis[1] * axis[1]).sqrt();
-        let unit = if length > 0.0 { [axis[0] / length, axis[1] / length] } else { [1.0, 0.0] };
+        let mut unit = if length > 0.0 { [axis[0] / length, axis[1] / length] } else { [1.0, 0.0] };
+        let blur = [how.blur[0] * size[0], how.blur[1] * size[1]];
+        let (x, y) = (unit[0].abs(), unit[1].abs());
+        let mut long = large.sqrt() + blur[0] * x + blur[1] * y;
+        let mut short = small.sqrt() + blur[0] * y + blur[1] * x;
+        if short > long {
+            (long, short, unit) = (short, long, [-unit[1], unit[0]]);
+        }
         Ellipse { major: [unit[0] * long / size[0], unit[1] * long / size[1]], lengths: [long, short] }
     }
 
-    /// One probe between two levels.
-    fn at_level(&self, s: f32, t: f32, level: f32, cubic: bool, how: &Lookup) -> Sample {
-        let last = self.level_count() - 1;
-        let level = level.min(last as f32);
-        let (lower, part) = (level as usize, level - level.floor());
-        let join = |number: usize| self.join(self.level(number), s, t, cubic, how);
-        let mut out = join(lower);
-        if part > 0.0 && lower < last {
-            let (fine, coarse) = (out, join(lower + 1));
-            out.add(part, &fine, &coarse);
+    /// One probe between a level and the one before it.
+    fn at_level(&self, s: f32, t: f32, (level, part): (usize, f32), how: &Lookup) -> Sample {
+        let join = |number: usize| {
+            let cubic = match how.interpolation {
+                Interpolation::Cubic => true,
+                Interpolation::Smart => number == 0,
+                Interpolation::Closest | Interpolation::Linear => false,
+            };
+            self.join(self.level(number), s, t, cubic, how)
+        };
+        if part >= 1.0 || level == 0 {
+            return join(level);
         }
+        let (fine, coarse) = (join(level - 1), join(level));
+        let mut out = fine;
+        out.add(part, &fine, &coarse);
         out
     }
 

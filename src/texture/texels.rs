@@ -41,9 +41,15 @@ impl Level {
                 let (to, from) = (level.place(x, y), (y * width + x) * channels);
                 let n = channels;
                 match (&mut level.texels, rows) {
-                    (Texels::Bytes(to_all), Texels::Bytes(all)) => to_all[to..to + n].copy_from_slice(&all[from..from + n]),
-                    (Texels::Words(to_all), Texels::Words(all)) => to_all[to..to + n].copy_from_slice(&all[from..from + n]),
-                    (Texels::Floats(to_all), Texels::Floats(all)) => to_all[to..to + n].copy_from_slice(&all[from..from + n]),
+                    (Texels::Bytes(to_all), Texels::Bytes(all)) => {
+                        to_all[to..to + n].copy_from_slice(&all[from..from + n])
+                    }
+                    (Texels::Words(to_all), Texels::Words(all)) => {
+                        to_all[to..to + n].copy_from_slice(&all[from..from + n])
+                    }
+                    (Texels::Floats(to_all), Texels::Floats(all)) => {
+                        to_all[to..to + n].copy_from_slice(&all[from..from + n])
+                    }
                     _ => {}
                 }
             }

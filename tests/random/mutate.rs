@@ -210,7 +210,7 @@ pub fn another(choice: &mut Choice) -> Routine {
             let count = number(choice);
             let ty = [AttributeType::Ints(count), AttributeType::Floats(count), AttributeType::Strings(count)]
                 [choice.below(3)];
-            Routine::Attribute(AttributeQuery { ty, slopes: choice.once_in(2) })
+            Routine::Attribute(AttributeQuery { ty, slopes: choice.once_in(2), of: AttributeOf::Attribute })
         }
         8 => Routine::Format(format(choice)),
         9 => {

@@ -3,7 +3,9 @@
 use super::options::{Options, Step, Value};
 use crate::cli::failure::Failure;
 use crate::compile::Compiler;
-use crate::scene::{Connection, GroupSpec, Hints, Layer, ParamType, ParamValue, Place, ShaderFiles, Usage, Values, parse_group};
+use crate::scene::{
+    Connection, GroupSpec, Hints, Layer, ParamType, ParamValue, Place, ShaderFiles, Usage, Values, parse_group,
+};
 use std::path::PathBuf;
 
 /// The group as written, and the compiler that knows its shaders.
@@ -40,7 +42,8 @@ pub fn group(options: &Options, compiler: Compiler) -> Result<(GroupSpec, Shader
             Step::Expr(code) => {
                 let name = format!("expr_{expressions}");
                 expressions += 1;
-                files = files.with_shader(&expression(&name, code)).map_err(|error| Failure::Wrong(error.to_string()))?;
+                files =
+                    files.with_shader(&expression(&name, code)).map_err(|error| Failure::Wrong(error.to_string()))?;
                 name
             }
             Step::Shader(name) => name.clone(),
@@ -49,7 +52,8 @@ pub fn group(options: &Options, compiler: Compiler) -> Result<(GroupSpec, Shader
         spec.layers.push(Layer { shader, layer_name: name, params: std::mem::take(&mut params), place: place() });
     }
     if let Some(param) = params.first() {
-        let text = format!("error: there is no shader after --param {}\n  help: values come before their shader", param.name);
+        let text =
+            format!("error: there is no shader after --param {}\n  help: values come before their shader", param.name);
         return Err(Failure::Usage(text));
     }
     if spec.layers.is_empty() {
@@ -104,7 +108,9 @@ fn written_type(text: &str) -> Result<(ParamType, Option<usize>), Failure> {
         (Some(kind), Some(array)) => Ok((kind, array)),
         _ => {
             let names = ParamType::NAMES.join(", ");
-            Err(Failure::Usage(format!("error: `{text}` is no type\n  help: the types are {names}, and arrays such as float[3]")))
+            Err(Failure::Usage(format!(
+                "error: `{text}` is no type\n  help: the types are {names}, and arrays such as float[3]"
+            )))
         }
     }
 }

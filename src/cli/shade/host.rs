@@ -4,8 +4,8 @@ use super::group::param;
 use super::options::Options;
 use crate::cli::failure::Failure;
 use crate::exec::{Attribute, AttributeAnswer, AttributeRequest, Host, Points, TraceRequest};
-use crate::render::camera_attributes;
 use crate::ops::matrix::{IDENTITY, Matrix, inverse, multiply};
+use crate::render::camera_attributes;
 use crate::scene::{ParamValue, Values};
 use crate::texture::{Texture, TextureFiles};
 use std::collections::HashMap;
@@ -33,7 +33,12 @@ impl PatchHost {
         // OSL's tests ask for it.
         attributes.insert("options.blahblah".to_owned(), Attribute::Floats(vec![std::f32::consts::PI]));
         let userdata: Result<Vec<ParamValue>, Failure> = options.userdata.iter().map(param).collect();
-        Ok(PatchHost { res: options.res, attributes, userdata: userdata?, textures: TextureFiles::new(options.path.clone()) })
+        Ok(PatchHost {
+            res: options.res,
+            attributes,
+            userdata: userdata?,
+            textures: TextureFiles::new(options.path.clone()),
+        })
     }
 }
 
@@ -117,7 +122,8 @@ impl Host for PatchHost {
     }
 
     fn attribute(&self, asked: &AttributeRequest<'_>, answer: &mut AttributeAnswer<'_>) {
-        let named = if asked.object.is_empty() { asked.name.to_owned() } else { format!("{}.{}", asked.object, asked.name) };
+        let named =
+            if asked.object.is_empty() { asked.name.to_owned() } else { format!("{}.{}", asked.object, asked.name) };
         if let Some(value) = self.attributes.get(&named).or_else(|| self.attributes.get(asked.name)) {
             return answer.all(value);
         }

@@ -168,7 +168,11 @@ const KNOWN: &[Known] = &[
     (&["stats", "runstats"], &[], "Print instructions before and after optimising, and time a point"),
     (&["v"], &[], "Print the group and what is done"),
     (&["h", "help"], &[], "Print this"),
-    (&["O1", "O2", "debug", "debug2", "llvm_debug", "batched", "profile", "warmup", "debugnan", "debuguninit"], &[], ""),
+    (
+        &["O1", "O2", "debug", "debug2", "llvm_debug", "batched", "profile", "warmup", "debugnan", "debuguninit"],
+        &[],
+        "",
+    ),
     (&["groupoutputs", "print-groupdata", "print-group-stats", "inbuffer", "no-output-placement", "optix"], &[], ""),
     (&["shadeimage", "noshadeimage", "raytype_opt", "use_rs_bitcode", "saveptx"], &[], ""),
     (&["texoptions", "colorspace", "llvm_opt", "entryoutput", "locale", "jbufferMB"], &["VALUE"], ""),
@@ -217,7 +221,8 @@ pub fn parse(args: &[String]) -> Result<Options, Failure> {
         let known = KNOWN.iter().find(|(names, ..)| names.contains(&name));
         let Some((names, words, _)) = known else {
             let all: Vec<&str> = KNOWN.iter().flat_map(|(names, ..)| names.iter().copied()).collect();
-            let hint = crate::scene::nearest(name, &all).map_or(String::new(), |n| format!("; did you mean {}?", dashed(n)));
+            let hint =
+                crate::scene::nearest(name, &all).map_or(String::new(), |n| format!("; did you mean {}?", dashed(n)));
             return Err(usage(format!("there is no option {arg}{hint}")));
         };
         let given: Vec<String> = rest.by_ref().take(words.len()).cloned().collect();
@@ -234,11 +239,7 @@ fn usage(text: String) -> Failure {
 }
 
 /// `-Ifolder`, `-I folder`, `-Dname=value`, `-Uname`.
-fn compile_option(
-    text: &str,
-    rest: &mut std::slice::Iter<String>,
-    options: &mut Options,
-) -> Result<(), Failure> {
+fn compile_option(text: &str, rest: &mut std::slice::Iter<String>, options: &mut Options) -> Result<(), Failure> {
     let (letter, value) = text.split_at(1);
     let value = if value.is_empty() { rest.next().cloned() } else { Some(value.to_owned()) };
     let value = value.ok_or_else(|| usage(format!("-{letter} needs a value")))?;
@@ -310,7 +311,11 @@ fn number<T: std::str::FromStr>(text: &str) -> Result<T, Failure> {
 /// A side of the grid; the limit keeps a slip of the pen from asking for all memory.
 fn size(text: &str) -> Result<u32, Failure> {
     let size: u32 = number(text)?;
-    if (1..=1 << 16).contains(&size) { Ok(size) } else { Err(usage(format!("a grid of {text} points is not possible"))) }
+    if (1..=1 << 16).contains(&size) {
+        Ok(size)
+    } else {
+        Err(usage(format!("a grid of {text} points is not possible")))
+    }
 }
 
 fn value(modifiers: &str, name: &str, text: &str) -> Value {
@@ -338,7 +343,9 @@ mod tests {
 
     #[test]
     fn a_command_line_of_testshade_is_read_in_its_order() {
-        let options = parsed("-g 64 32 -layer a --param:type=int:lockgeom=0 n -3 first --shader second b -connect a x b y -od half");
+        let options = parsed(
+            "-g 64 32 -layer a --param:type=int:lockgeom=0 n -3 first --shader second b -connect a x b y -od half",
+        );
         let value = Value { ty: Some("int".into()), interpolated: Some(true), ..value("", "n", "-3") };
         let expected = [
             Step::Layer("a".into()),

@@ -195,7 +195,8 @@ impl<'o> Job<'o> {
             for (output, values) in self.outputs.iter().zip(values) {
                 let channels = output.grid.channels;
                 let name = output.name.rsplit('.').next().unwrap_or(&output.name);
-                let numbers = values[lane * channels..][..channels].iter().map(|x| format!(" {}", shown(*x, output.ints)));
+                let numbers =
+                    values[lane * channels..][..channels].iter().map(|x| format!(" {}", shown(*x, output.ints)));
                 say(&format!("  {name} :{}\n", numbers.collect::<String>()));
             }
         }
@@ -220,7 +221,9 @@ impl<'o> Job<'o> {
     /// Saves images and tells figures.
     fn finish(self, group: &Group) -> Result<(), Failure> {
         // testshade ends so where it saves no image, and its references have it.
-        if matches!(&self.options.outputs[..], [] | [(_, _)]) && self.outputs.iter().all(|o| o.file.as_os_str() == "null") {
+        if matches!(&self.options.outputs[..], [] | [(_, _)])
+            && self.outputs.iter().all(|o| o.file.as_os_str() == "null")
+        {
             say("\n");
         }
         let numbers = match self.options.format.as_deref() {
@@ -231,7 +234,9 @@ impl<'o> Job<'o> {
         };
         for output in self.outputs.iter().filter(|output| output.file.as_os_str() != "null" && !self.options.print) {
             let saved = save(&output.grid, &output.file, numbers);
-            saved.map_err(|error| Failure::Usage(format!("{}: error: cannot be written: {error}", output.file.display())))?;
+            saved.map_err(|error| {
+                Failure::Usage(format!("{}: error: cannot be written: {error}", output.file.display()))
+            })?;
         }
         if self.options.stats {
             let points = f64::from(self.options.iters.max(1)) * self.options.res.map(f64::from).iter().product::<f64>();

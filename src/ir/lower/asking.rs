@@ -100,7 +100,8 @@ impl Lower<'_> {
 
     /// Writes what was found, and leaves what was there where nothing was.
     pub(super) fn take_found(&mut self, out: &Target, old: &[Reg], results: &[Reg]) {
-        let new = results[1..].iter().zip(old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect::<Vec<_>>();
+        let new =
+            results[1..].iter().zip(old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect::<Vec<_>>();
         self.write_flat(out, &new);
     }
 
@@ -122,7 +123,9 @@ impl Lower<'_> {
         let values: Vec<Vec<Reg>> = self.operands(&exprs).iter().map(|value| self.regs(value)).collect();
         self.at(call.span);
         let (mut least, mut most) = (self.b.float(0.0), self.b.float(1e30));
-        for (option, value) in exprs.iter().zip(&values).skip(2).step_by(2).map(|(expr, _)| expr).zip(values.iter().skip(3).step_by(2)) {
+        for (option, value) in
+            exprs.iter().zip(&values).skip(2).step_by(2).map(|(expr, _)| expr).zip(values.iter().skip(3).step_by(2))
+        {
             let ExprKind::String(name) = &option.kind else { continue };
             match (name.as_str(), value.first()) {
                 ("mindist", Some(&reg)) if self.b.program.kind(reg) == Kind::Float => least = reg,

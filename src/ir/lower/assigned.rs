@@ -152,7 +152,8 @@ impl Assigned {
             }
             Builtin(name, args) => {
                 out.prints |= matches!(*name, "printf" | "fprintf" | "error" | "warning");
-                out.prints |= matches!(*name, "setmessage" | "getmessage" | "random" | "trace") || name.starts_with("dict_");
+                out.prints |=
+                    matches!(*name, "setmessage" | "getmessage" | "random" | "trace") || name.starts_with("dict_");
                 if matches!(*name, "bump" | "displace") {
                     let moved = |v: &Variable| matches!(v.global, Some(Global::P | Global::N));
                     let moved = shader.variables.iter().enumerate().filter(|(_, variable)| moved(variable));

@@ -150,7 +150,11 @@ impl Lower<'_> {
             Some(Kind::Closure) | None => return value,
         };
         let asked = vec![self.symbol(""), self.symbol(name)];
-        let results = self.b.call(Routine::Attribute(AttributeQuery { ty: query, slopes: false, of: AttributeOf::Attribute }), asked, self.span);
+        let results = self.b.call(
+            Routine::Attribute(AttributeQuery { ty: query, slopes: false, of: AttributeOf::Attribute }),
+            asked,
+            self.span,
+        );
         let new = results[1..].iter().zip(old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
         Value::Regs(new)
     }

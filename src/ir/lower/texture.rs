@@ -51,7 +51,8 @@ impl Lower<'_> {
         src.push(self.b.int(options.missing));
         src.extend(options.strings);
         let channels = call.ty.base().map_or(1, Base::floats) as u32;
-        let routine = Routine::Texture(TextureCall { channels, environment, slopes: false });
+        let routine =
+            Routine::Texture(TextureCall { channels, environment, slopes: false, asks: options.message.is_some() });
         let results = self.b.call(routine, src, self.span);
         let n = channels as usize;
         if let Some(target) = options.alpha {
