@@ -6,7 +6,7 @@ use super::expr::nearest;
 use super::rank::{better_overload, rank_type, same_storage, score_type};
 use super::typed::{Argument, Expr, ExprKind, FunctionId};
 use crate::lang::builtins::{self, Formal, NOT_YET};
-use crate::lang::closures::{ClosureId, ParamSpec};
+use crate::lang::closures::{ClosureId, ClosureSpec, ParamSpec};
 use crate::lang::types::{Length, Type};
 use velour_grammar::ast::{self, Ident};
 use velour_grammar::{Diagnostic, Span};
@@ -43,6 +43,14 @@ impl Checker<'_> {
             return Expr::error(span);
         }
         let candidates = self.candidates(&name.name);
+        if candidates.is_empty() && self.foreign.contains(&name.name) {
+            let message = format!("velour has no closure `{}`; it adds nothing", name.name);
+            self.report(
+                Diagnostic::warning("W0506", name.span, message).help("`velour info` lists the closures there are"),
+            );
+            let zero = Expr::new(ExprKind::Int(0), Type::INT, span);
+            return Expr::new(ExprKind::Convert(Box::new(zero)), Type::CLOSURE, span);
+        }
         if candidates.is_empty() || matches!(self.lookup(&name.name), Some(Symbol::Var(_))) {
             self.unknown_function(name);
             return Expr::error(span);
@@ -132,7 +140,8 @@ impl Checker<'_> {
         self.note_call(id, span);
         let mut arguments = Vec::new();
         for (((ty, output), value), arg) in formals.iter().zip(values).zip(args) {
-            if *output {
+            // What has no name cannot be written: the function writes a copy that nobody reads.
+            if *output && is_place(arg) {
                 let Some(place) = self.check_place(arg) else { return Expr::error(span) };
                 arguments.push(Argument::Out(place));
             } else if matches!(arg.kind, ast::ExprKind::InitList(_)) {
@@ -252,11 +261,7 @@ impl Checker<'_> {
                 continue;
             };
             let Some(at) = spec.keywords.iter().position(|keyword| keyword.name == word) else {
-                let names: Vec<String> = spec.keywords.iter().map(|keyword| format!("\"{}\"", keyword.name)).collect();
-                let message = format!("`{}` has no keyword parameter \"{word}\"", spec.name);
-                let known =
-                    if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
-                self.report(Diagnostic::error("E0411", token.span, message).help(known));
+                self.unknown_keyword(&spec, word, token.span);
                 continue;
             };
             if let Some(message) = wrong_choice(&spec.keywords[at], &value) {
@@ -277,6 +282,21 @@ impl Checker<'_> {
             keywords.push((at as u32, value));
         }
         Expr::new(ExprKind::Closure(id, params, keywords), Type::CLOSURE, span)
+    }
+
+    /// Warns of a keyword that a closure does not have. The tags of `debug` are the host's own.
+    fn unknown_keyword(&mut self, spec: &ClosureSpec, word: &str, span: Span) {
+        if spec.name == "debug" {
+            return;
+        }
+        let names: Vec<&str> = spec.keywords.iter().map(|keyword| keyword.name).collect();
+        let message = format!("`{}` has no keyword parameter \"{word}\"; it has no effect", spec.name);
+        let help = match nearest(word, names.iter().copied()) {
+            Some(near) => format!("did you mean \"{near}\"?"),
+            None if names.is_empty() => "it has none".to_owned(),
+            None => format!("it has \"{}\"", names.join("\", \"")),
+        };
+        self.report(Diagnostic::warning("W0506", span, message).help(help));
     }
 
     /// The message for a call of one function whose only fault is the type of a variable that it writes.
@@ -320,6 +340,15 @@ fn wrong_choice(param: &ParamSpec, value: &Expr) -> Option<String> {
     let ExprKind::String(text) = &value.kind else { return None };
     let known = param.choices.is_empty() || param.choices.contains(&text.as_str());
     (!known).then(|| format!("\"{text}\" is no {} that velour knows", param.name))
+}
+
+/// Does an expression name a variable or a part of one?
+fn is_place(expr: &ast::Expr) -> bool {
+    match &expr.kind {
+        ast::ExprKind::Name(_) => true,
+        ast::ExprKind::Index(base, _) | ast::ExprKind::Field(base, _) => is_place(base),
+        _ => false,
+    }
 }
 
 /// The options of `texture` and `environment`.

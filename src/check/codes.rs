@@ -34,6 +34,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("W0506", "a closure keyword that asks for what velour does not model"),
     ("W0503", "an index outside its array"),
     ("W0504", "a function defined twice"),
+    ("W0509", "an assignment to a parameter that is not `output`, or to a global that is usually only read"),
     ("W0507", "a variable or parameter that is never read"),
     ("W0508", "a variable that is never written"),
 ];

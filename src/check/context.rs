@@ -1,10 +1,10 @@
 //! The checker's state: scopes, variables, functions, and the messages so far.
 
-use super::typed::{Function, FunctionId, Shader, VarId, Variable};
+use super::typed::{Function, FunctionId, Shader, Stmt, VarId, Variable};
 use crate::lang::closures::ClosureTable;
 use crate::lang::globals::GLOBALS;
 use crate::lang::types::{Struct, Type};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use velour_grammar::{Diagnostic, Diagnostics, Span};
 
@@ -36,6 +36,10 @@ pub(super) struct Checker<'a> {
     pub variables: Vec<Variable>,
     /// Whether each variable may be assigned.
     pub writable: Vec<bool>,
+    /// Closures that a header says are builtin and velour does not have.
+    pub foreign: HashSet<String>,
+    /// Declarations of the statements being checked that belong before them.
+    pub hoisted: Vec<Stmt>,
     pub signatures: Vec<Signature>,
     pub bodies: Vec<Option<Arc<Function>>>,
     /// What `return` gives here: `None` in a shader body.
@@ -57,6 +61,8 @@ impl<'a> Checker<'a> {
             scopes: vec![HashMap::new()],
             variables: Vec::new(),
             writable: Vec::new(),
+            foreign: HashSet::new(),
+            hoisted: Vec::new(),
             signatures: Vec::new(),
             bodies: Vec::new(),
             returns: None,

@@ -2,6 +2,7 @@
 
 use super::context::{Checker, Signature, Symbol};
 use super::typed::{self, FunctionId, VarId};
+use crate::lang::builtins;
 use crate::lang::types::{Base, Element, Length, Struct, Type};
 use std::sync::Arc;
 use velour_grammar::ast::{ArrayLen, FunctionDecl, Metadata, Param, ShaderDecl, StructDecl, TypeName, TypeSpec};
@@ -98,6 +99,9 @@ impl Checker<'_> {
     }
 
     pub fn declare_function(&mut self, decl: &FunctionDecl) {
+        if decl.body.is_none() && self.binds_to_builtin(decl) {
+            return;
+        }
         let returns = self.resolve_type(&decl.return_type, ArrayLen::Single);
         let formals: Vec<_> = decl.params.iter().map(|p| (self.resolve_type(&p.ty, p.array), p.output)).collect();
         let mut id = self.function_id(decl, &returns, &formals);
@@ -126,6 +130,21 @@ impl Checker<'_> {
         }
         let function = typed::Function { name: decl.name.name.clone(), returns, params, body };
         self.bodies[id.0 as usize] = Some(Arc::new(function));
+    }
+
+    /// Is a prototype one of a function that comes with the language, so that it declares nothing? A closure that is said to be builtin and
+    /// that velour does not have is remembered, since calls of it are no mistake of the shader.
+    fn binds_to_builtin(&mut self, decl: &FunctionDecl) -> bool {
+        let name = &decl.name.name;
+        if builtins::static_name(name).is_some() || self.closures.named(name).next().is_some() {
+            return true;
+        }
+        let builtin = decl.metadata.iter().any(|entry| entry.name.name == "builtin");
+        let closure = decl.return_type.closure;
+        if builtin && closure {
+            self.foreign.insert(name.clone());
+        }
+        builtin && closure
     }
 
     /// A function that takes the place of one defined before; calls between the two keep the old one.

@@ -15,14 +15,18 @@ impl Checker<'_> {
         }
         let variable = &self.variables[place.var.0 as usize];
         let (name, declared, global) = (variable.name.clone(), variable.span, variable.global.is_some());
-        let mut diagnostic = Diagnostic::error("E0503", expr.span, format!("`{name}` cannot be assigned"));
-        diagnostic = if global {
-            diagnostic.help("this shader global is read only; copy it to a variable")
+        let diagnostic = if global {
+            let message = format!("`{name}` is assigned, a global that shaders usually only read");
+            Diagnostic::warning("W0509", expr.span, message)
+                .help("the value holds to the end of the shader; a variable says what is meant")
         } else {
-            diagnostic.also(declared, "a parameter that is not `output`").help("mark it `output`, or copy it")
+            let message = format!("`{name}` is assigned and not marked `output`");
+            Diagnostic::warning("W0509", expr.span, message)
+                .also(declared, "declared here")
+                .help("the caller does not see the new value; mark it `output`, or copy it")
         };
         self.report(diagnostic);
-        None
+        Some(place)
     }
 
     fn place(&mut self, expr: &ast::Expr) -> Option<Place> {

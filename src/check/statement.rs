@@ -1,7 +1,7 @@
 //! Statements.
 
 use super::context::Checker;
-use super::typed::{Expr, Stmt};
+use super::typed::{Expr, ExprKind, Place, Stmt};
 use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{self, StmtKind, VarDecl};
 use velour_grammar::{Diagnostic, Span};
@@ -9,19 +9,37 @@ use velour_grammar::{Diagnostic, Span};
 impl Checker<'_> {
     /// Statements of one block; the caller opens the scope.
     pub fn check_block(&mut self, stmts: &[ast::Stmt]) -> Vec<Stmt> {
-        let mut out = Vec::new();
+        let (mut out, outer) = (Vec::new(), std::mem::take(&mut self.hoisted));
         for stmt in stmts {
-            self.check_stmt(stmt, &mut out);
+            let mut own = Vec::new();
+            self.check_stmt(stmt, &mut own);
+            out.append(&mut self.hoisted);
+            out.append(&mut own);
         }
+        self.hoisted = outer;
         out
     }
 
+    /// The statement under a condition or a loop. It is no scope of its own unless it is a block, as in OSL: a variable that it declares
+    /// lives on after it, and so is declared before.
     fn check_body(&mut self, stmt: &ast::Stmt) -> Vec<Stmt> {
-        self.scoped(|c| {
-            let mut out = Vec::new();
-            stacker::maybe_grow(64 << 10, 1 << 20, || c.check_stmt(stmt, &mut out));
-            out
-        })
+        let mut out = Vec::new();
+        stacker::maybe_grow(64 << 10, 1 << 20, || self.check_stmt(stmt, &mut out));
+        if !matches!(stmt.kind, StmtKind::Declare(_)) {
+            return out;
+        }
+        let mut assigned = Vec::new();
+        for stmt in out {
+            let Stmt::Declare(var, init) = stmt else { continue };
+            self.hoisted.push(Stmt::Declare(var, None));
+            if let Some(init) = init {
+                let (ty, span) = (init.ty.clone(), init.span);
+                let place = Place { var, path: Vec::new(), ty: ty.clone() };
+                let assign = Expr::new(ExprKind::Assign(place, Box::new(init)), ty, span);
+                assigned.push(Stmt::Expr(assign));
+            }
+        }
+        assigned
     }
 
     fn check_stmt(&mut self, stmt: &ast::Stmt, out: &mut Vec<Stmt>) {

@@ -45,6 +45,7 @@ impl Words for Option<Facets> {
         ("beckmann", Some(Facets::Beckmann)),
         ("blinn", Some(Facets::Blinn)),
         ("default", Some(Facets::Ggx)),
+        ("multi_ggx", Some(Facets::Ggx)),
         ("sharp", None),
         ("", Some(Facets::Ggx)),
     ];

@@ -43,7 +43,7 @@ const ABSORPTION: ParamSpec =
     ParamSpec::about("absorption inside, per unit of length").left_out(0.0, "absorption inside the medium");
 const DISPERSION: ParamSpec = ParamSpec::about("inverse Abbe number").left_out(0.0, "the colors of dispersion");
 
-const SHARED: &[Waiver] = &[
+pub(super) const SHARED: &[Waiver] = &[
     Waiver {
         claim: Claim::Reciprocity,
         only: Some(("scattering", "multiple")),
@@ -104,7 +104,7 @@ arguments! {
 pub(super) fn microfacet() -> ClosureDef {
     let doc = "rough dielectric reflection and refraction";
     ClosureDef::new("microfacet", doc, |a: Plain, leaf| {
-        Boundary {
+        Walls {
             term: Term::Dielectric,
             distribution: a.distribution,
             normal: a.N,
@@ -150,7 +150,7 @@ arguments! {
 pub(super) fn dielectric() -> ClosureDef {
     let doc = "boundary of glass, water and the like, rough or smooth, reflecting and refracting";
     ClosureDef::new("dielectric_bsdf", doc, |a: DielectricBsdf, leaf| {
-        Boundary {
+        Walls {
             term: Term::Dielectric,
             distribution: a.distribution,
             normal: a.N,
@@ -193,7 +193,7 @@ pub(super) fn conductor() -> ClosureDef {
     let doc = "metal of a complex index of refraction, rough or smooth";
     ClosureDef::new("conductor_bsdf", doc, |a: ConductorBsdf, leaf| {
         let ([nr, ng, nb], [kr, kg, kb]) = (a.ior.0, a.extinction.0);
-        Boundary {
+        Walls {
             term: Term::Conductor,
             distribution: a.distribution,
             normal: a.N,
@@ -239,7 +239,7 @@ pub(super) fn generalized_schlick() -> ClosureDef {
     let doc = "rough or smooth boundary whose reflectance runs from f0 to f90";
     ClosureDef::new("generalized_schlick_bsdf", doc, |a: GeneralizedSchlick, leaf| {
         let ([r0, g0, b0], [r90, g90, b90]) = (a.f0.0, a.f90.0);
-        Boundary {
+        Walls {
             term: Term::Schlick,
             distribution: a.distribution,
             normal: a.N,
@@ -261,14 +261,14 @@ pub(super) fn generalized_schlick() -> ClosureDef {
 
 /// The Fresnel terms of boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Term {
+pub(super) enum Term {
     Dielectric,
     Conductor,
     Schlick,
 }
 
 /// What the rough boundaries have in common.
-struct Boundary<'a> {
+pub(super) struct Walls<'a> {
     term: Term,
     distribution: Word<Option<Facets>>,
     normal: Normal,
@@ -305,7 +305,41 @@ enum Half {
     Transmitting,
 }
 
-impl Boundary<'_> {
+impl Walls<'_> {
+    /// White facets that reflect, with all the light between them.
+    pub(super) fn facets<'a>(
+        term: Term,
+        distribution: Word<Option<Facets>>,
+        (normal, tangent): (Normal, Vector),
+        widths: [Floats; 2],
+        fresnel: &'a [Floats],
+    ) -> Walls<'a> {
+        Walls {
+            term,
+            distribution,
+            normal,
+            tangent,
+            widths,
+            fresnel,
+            tints: [WHITE; 2],
+            refract: Ints::Uniform(0),
+            geometry: None,
+            sampling: None,
+            scattering: (None, Scattering::Multiple),
+            two_sided: false,
+        }
+    }
+
+    /// The same with these halves.
+    pub(super) fn passing(self, refract: Ints) -> Self {
+        Walls { refract, ..self }
+    }
+
+    /// The same in other colors.
+    pub(super) fn tinted(self, tints: [Color; 2]) -> Self {
+        Walls { tints, ..self }
+    }
+
     fn black(&self, leaf: &LeafMaker<'_>, half: Half, lane: usize) -> bool {
         self.tints[half as usize].0.iter().all(|&c| leaf.float(c, lane) == 0.0)
     }
@@ -355,7 +389,7 @@ impl Boundary<'_> {
         words || floats || matches!(self.refract, Ints::Varying(_))
     }
 
-    fn lobes(&self, leaf: &mut LeafMaker<'_>) {
+    pub(super) fn lobes(&self, leaf: &mut LeafMaker<'_>) {
         let [x, y] = self.widths;
         let frame = leaf.mirror_frame(self.normal, if x == y { None } else { Some(self.tangent) });
         let key = |leaf: &LeafMaker<'_>, lane| {
@@ -364,7 +398,7 @@ impl Boundary<'_> {
         };
         for (halves, gate) in leaf.variants(self.varies(), key) {
             let rough = |style: &Option<Style>| style.is_some_and(|style| style.facets.is_some());
-            let passing = if halves.iter().all(rough) { self.passing() } else { 0.0 };
+            let passing = if halves.iter().all(rough) { self.passed_share() } else { 0.0 };
             let transmits = halves[Half::Transmitting as usize].is_some();
             for (half, style) in [Half::Reflecting, Half::Transmitting].into_iter().zip(halves) {
                 let Some(mut style) = style else { continue };
@@ -407,7 +441,7 @@ impl Boundary<'_> {
     }
 
     /// How much passed light counts against reflected light: by the tints, where they are the same in all lanes.
-    fn passing(&self) -> f32 {
+    fn passed_share(&self) -> f32 {
         let mean = |tint: &Color| match tint.0 {
             [Floats::Uniform(r), Floats::Uniform(g), Floats::Uniform(b)] => Some(r.abs() + g.abs() + b.abs()),
             _ => None,

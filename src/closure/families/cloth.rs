@@ -132,6 +132,27 @@ pub(super) fn sheen_bsdf() -> ClosureDef {
     .without(SHEEN_BSDF_WAIVERS)
 }
 
+arguments! {
+    struct SheenOfCycles {
+        N: Normal = NORMAL,
+        roughness: Float = ROUGHNESS,
+    }
+}
+
+/// `sheen(N, roughness)`, as Cycles has it.
+pub(super) fn sheen_alone() -> ClosureDef {
+    let doc = "the sheen lobe alone, white, as Cycles calls it: sheen_bsdf of color 1";
+    ClosureDef::new("sheen", doc, |a: SheenOfCycles, leaf| {
+        let form = SheenForm { shadowing: None, softening: None, sampling: None, layering: None, mode: None };
+        let white = Color([crate::closure::tree::Floats::Uniform(1.0); 3]);
+        for (part, rule) in form.lobes(leaf, a.N, white, a.roughness) {
+            leaf.cover(part, white, rule);
+        }
+    })
+    .top_albedo(TopAlbedo::Sheen)
+    .without(SHEEN_BSDF_WAIVERS)
+}
+
 /// What the keywords of a sheen choose.
 struct SheenForm {
     shadowing: Option<Word<Shadowing>>,

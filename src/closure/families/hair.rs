@@ -5,7 +5,9 @@ use crate::arguments;
 use crate::bsdf::hair::Hair;
 use crate::closure::arguments::{Color, Float, Normal, Vector};
 use crate::closure::definition::ClosureDef;
+use crate::closure::leaf::LeafMaker;
 use crate::closure::lobe_kind::LobeKind;
+use crate::closure::tree::Floats;
 use crate::lang::closures::{Claim, ParamSpec, Waiver};
 
 const ALONG: ParamSpec = ParamSpec::about("variance along the fiber, 0.001..1").tried(&[0.05, 0.001, 0.01, 0.3, 1.0]);
@@ -31,7 +33,7 @@ arguments! {
     }
 }
 
-const HAIR_WAIVERS: &[Waiver] = &[Waiver {
+pub(super) const WAIVERS: &[Waiver] = &[Waiver {
     claim: Claim::Reciprocity,
     only: None,
     why: "the viewer alone says where on its width the fiber is met",
@@ -60,5 +62,30 @@ pub(super) fn chiang() -> ClosureDef {
             leaf.lobe(kind, frame, &params);
         }
     })
-    .without(HAIR_WAIVERS)
+    .without(WAIVERS)
+}
+
+/// A white fiber along the tangent of the surface, whose scales are not tilted.
+pub(super) struct Fiber {
+    pub eta: Floats,
+    pub along: Floats,
+    pub around: Floats,
+    pub absorption: [Floats; 3],
+}
+
+impl Fiber {
+    pub(super) fn lobes(&self, leaf: &mut LeafMaker<'_>, normal: Normal) {
+        let frame = leaf.frame(normal, None);
+        let kinds = [
+            LobeKind::of::<Hair<0>>(),
+            LobeKind::of::<Hair<1>>(),
+            LobeKind::of::<Hair<2>>(),
+            LobeKind::of::<Hair<3>>(),
+        ];
+        let ([r, g, b], one) = (self.absorption, Floats::Uniform(1.0));
+        for kind in kinds {
+            let params = [self.eta, self.along, self.around, Floats::Uniform(0.5), r, g, b, one, one, one];
+            leaf.lobe(kind, frame, &params);
+        }
+    }
 }

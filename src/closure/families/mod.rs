@@ -5,6 +5,7 @@
 mod boundaries;
 mod cloth;
 mod coat;
+mod cycles;
 mod diffuse;
 mod hair;
 mod highlights;
@@ -18,7 +19,7 @@ use super::definition::ClosureDef;
 
 /// All of them, in the order that `velour info` lists.
 pub(super) fn all() -> Vec<ClosureDef> {
-    vec![
+    let mut all = vec![
         lights::emission(),
         lights::background(),
         diffuse::diffuse(),
@@ -54,5 +55,8 @@ pub(super) fn all() -> Vec<ClosureDef> {
         toon::glossy_toon(),
         volumes::anisotropic(),
         volumes::medium(),
-    ]
+        cloth::sheen_alone(),
+    ];
+    all.extend(cycles::all());
+    all
 }
