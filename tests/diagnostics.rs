@@ -17,7 +17,12 @@ fn messages_are_as_written_down() {
     names.sort();
     for path in names.iter().filter(|path| path.extension().is_some_and(|e| e == "osl")) {
         let name = path.file_name().unwrap().to_str().unwrap();
-        let checked = Compiler::new().check(name, &fs::read_to_string(path).unwrap());
+        let text = fs::read_to_string(path).unwrap();
+        // What only -Wall says stands in files of its own.
+        let checked = match name.starts_with("unused") {
+            true => Compiler::new().check_closely(name, text.as_bytes()),
+            false => Compiler::new().check(name, &text),
+        };
         seen.extend(checked.diagnostics.list.iter().map(|d| d.code));
         let text = checked.sources.render(&checked.diagnostics, Format::Full, false);
         expect_file![path.with_extension("txt")].assert_eq(&text);

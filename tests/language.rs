@@ -30,6 +30,7 @@ fn run(text: &str, lanes: usize) -> String {
     machine.shade(&group, &points(lanes));
     let say = |report: Report| match report.kind {
         ReportKind::Output => report.text,
+        ReportKind::Mistake(_) => format!("Mistake {:?}\n", Report { kind: report.kind.clone(), ..report }.to_string()),
         kind => format!("{kind:?} {:?}\n", Report { kind: kind.clone(), ..report }.to_string()),
     };
     machine.take_reports().into_iter().map(say).collect()

@@ -5,7 +5,7 @@ use super::context::{Checker, Signature, Symbol};
 use super::expr::nearest;
 use super::rank::{better_overload, rank_type, same_storage, score_type};
 use super::typed::{Argument, Expr, ExprKind, FunctionId};
-use crate::lang::builtins::{self, Formal, NOT_YET};
+use crate::lang::builtins::{self, Formal};
 use crate::lang::closures::{ClosureId, ClosureSpec, ParamSpec};
 use crate::lang::types::{Length, Type};
 use velour_grammar::ast::{self, Ident};
@@ -161,11 +161,6 @@ impl Checker<'_> {
         values: Vec<Expr>,
         span: Span,
     ) -> Expr {
-        if NOT_YET.contains(&name) {
-            let diagnostic = Diagnostic::error("E0412", span, format!("velour does not run `{name}` yet"));
-            self.report(diagnostic.help("compute the value in the shader, or pass it as a parameter"));
-            return Expr::error(span);
-        }
         if let (true, Some(ExprKind::String(kind))) =
             (matches!(name, "noise" | "pnoise"), values.first().map(|v| &v.kind))
             && !self.noise_exists(name, kind, values[0].span)
@@ -225,8 +220,9 @@ impl Checker<'_> {
 
     /// Reports a literal name that stands for no noise.
     fn noise_exists(&mut self, function: &str, name: &str, span: Span) -> bool {
-        const NAMES: &[&str] = &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash"];
-        let unable = name == "gabor" || (function == "pnoise" && name.contains("simplex"));
+        const NAMES: &[&str] =
+            &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash", "gabor"];
+        let unable = function == "pnoise" && name.contains("simplex");
         if unable {
             let diagnostic =
                 Diagnostic::error("E0412", span, format!("velour does not run {function}(\"{name}\") yet"));

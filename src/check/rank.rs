@@ -23,6 +23,10 @@ impl Checker<'_> {
                 }
                 formals.clone()
             }
+            // Closures are given by nobody but other shaders.
+            Candidate::Builtin(name, signature) if *name != "getmessage" && writes_closure(signature, args) => {
+                return None;
+            }
             Candidate::Builtin(_, signature) => {
                 return score_builtin(signature, args).filter(|_| self.lists_fit_builtin(signature, lists));
             }
@@ -135,7 +139,17 @@ fn score_closure(spec: &ClosureSpec, args: &[Expr]) -> Option<u32> {
     scores.try_fold(1 + extra as u32, |sum, score| Some(sum + score?))
 }
 
-/// Can a builtin that writes any type write this one? Structs and closures are not among what it gives.
+/// Would a builtin that writes any type write a closure?
+fn writes_closure(signature: &Signature, args: &[Expr]) -> bool {
+    let written = signature
+        .formals
+        .iter()
+        .zip(args)
+        .filter(|((formal, output), _)| *output && !matches!(formal, Formal::Type(_)));
+    written.map(|(_, arg)| arg).any(|arg| arg.ty.element_type().base() == Some(Base::Closure))
+}
+
+/// Can a builtin that writes any type write this one? Structs are not among what it gives.
 fn holds_values(ty: &Type) -> bool {
     ty.element_type().base().is_some_and(|base| base != Base::Void)
 }

@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::info_file::{shader_json, shader_lines, shader_text};
 use super::speak::say;
 use crate::compile::CompileError;
-use crate::lang::builtins::{self, Formal, NOT_YET, Signature};
+use crate::lang::builtins::{self, Formal, Signature};
 use crate::lang::closures::ClosureTable;
 use crate::lang::describe::{closure_head, closure_text};
 use crate::scene::{find_shader, nearest};
@@ -103,10 +103,8 @@ fn everything(table: &ClosureTable, header: &[FunctionDecl]) -> String {
     for spec in &table.specs {
         out += &format!("    {}\n        {}\n", wrapped(&closure_head(spec)), wrapped(spec.doc));
     }
-    let names = function_names(header);
-    let (missing, present): (Vec<&str>, Vec<&str>) = names.into_iter().partition(|name| NOT_YET.contains(name));
-    out += &format!("\nfunctions:\n{}", columns(&present));
-    out += &format!("\nfunctions that are known but not run yet:\n{}", columns(&missing));
+    let names: Vec<&str> = function_names(header).into_iter().collect();
+    out += &format!("\nfunctions:\n{}", columns(&names));
     out
 }
 
@@ -159,9 +157,6 @@ fn one(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
     }
     for function in header.iter().filter(|f| f.name.name == name) {
         out += &format!("{}\n", function_text(function));
-    }
-    if NOT_YET.contains(&name) {
-        out += "    velour knows this function and does not run it yet: a call is an error\n";
     }
     out
 }

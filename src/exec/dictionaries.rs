@@ -1,44 +1,13 @@
 //! Dictionaries that shaders search, and the nodes that each lane has found.
 
+use super::found::Found;
 use super::lane::Lane;
 use super::report::Mistake;
 use super::run::Run;
 use crate::ir::op::AttributeType;
 use crate::ir::program::Reg;
 use crate::ops::dictionary::Dictionary;
-use std::collections::HashMap;
 use velour_grammar::Span;
-
-/// Dictionaries that a machine remembers, so that shaders which make up new ones do not fill the memory.
-const REMEMBERED: usize = 64;
-
-/// What is known of dictionaries.
-#[derive(Debug, Default)]
-pub(super) struct Dictionaries {
-    /// By text, or by name of file; nothing for what is no XML.
-    numbers: HashMap<String, Option<usize>>,
-    parsed: Vec<Dictionary>,
-    /// Lane by lane what was found: dictionary, node, and the rest of the same search. A shader holds the number of an entry plus one,
-    /// so that no other lane changes it.
-    found: Vec<Vec<Found>>,
-}
-
-#[derive(Debug)]
-struct Found {
-    dictionary: usize,
-    node: usize,
-    rest: Vec<usize>,
-}
-
-impl Dictionaries {
-    /// Forgets what the batch before has found.
-    pub(super) fn begin(&mut self) {
-        self.found.iter_mut().for_each(Vec::clear);
-        if self.numbers.len() > REMEMBERED {
-            *self = Dictionaries::default();
-        }
-    }
-}
 
 impl Run<'_> {
     /// The dictionary of a text or a file.

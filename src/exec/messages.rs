@@ -6,56 +6,11 @@
 use super::lane::Lane;
 use super::report::{MessageFault, Mistake};
 use super::run::Run;
-use crate::closure::tree::NodeId;
+use super::slots::{MOST, Slot, State};
 use crate::ir::op::MessageShape;
 use crate::ir::program::{Kind, Reg};
 use crate::lang::symbols::Symbol;
 use velour_grammar::Span;
-
-/// The most messages of different names or types in one batch.
-const MOST: usize = 1024;
-
-/// What is known of a message in one lane.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
-    #[default]
-    Nothing,
-    /// It was asked for when it was not there.
-    Asked,
-    Set,
-}
-
-/// The messages of one name and type, lane by lane.
-#[derive(Debug, Default)]
-pub(super) struct Slot {
-    name: i32,
-    shape: Option<MessageShape>,
-    states: Vec<State>,
-    /// Where each lane has set it or asked for it.
-    spans: Vec<Span>,
-    floats: Vec<Vec<f32>>,
-    ints: Vec<Vec<i32>>,
-    closures: Vec<Option<NodeId>>,
-}
-
-impl Slot {
-    fn new(name: i32, shape: &MessageShape, lanes: usize) -> Self {
-        let count = shape.count as usize;
-        let mut slot = Slot {
-            name,
-            shape: Some(shape.clone()),
-            states: vec![State::Nothing; lanes],
-            spans: vec![Span::NONE; lanes],
-            ..Slot::default()
-        };
-        match shape.kind {
-            Kind::Float => slot.floats.resize(count, vec![0.0; lanes]),
-            Kind::Int | Kind::String => slot.ints.resize(count, vec![0; lanes]),
-            Kind::Closure => slot.closures.resize(count, None),
-        }
-        slot
-    }
-}
 
 impl Run<'_> {
     /// The message of a name that a lane has set or asked for.

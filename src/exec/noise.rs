@@ -6,6 +6,7 @@ use crate::ir::program::Reg;
 use crate::lanes;
 use crate::math::columns::copy_block;
 use crate::math::noise::cell::*;
+use crate::math::noise::gabor::Gabor;
 use crate::math::noise::perlin::*;
 use crate::math::noise::simplex::*;
 use crate::math::noise::{Endless, Jet, Periodic, unsigned};
@@ -151,6 +152,50 @@ lanes! {
     }
 }
 
+/// Gabor noise lane by lane; a lane costs hundreds of steps, so there is nothing to gain by columns. A fourth coordinate moves the seed
+/// from one whole number to the next, with the values of both joined.
+fn gabor<'r>(noise: Noise, out: &mut [Vec<f32>], src: &[Reg], column: impl Fn(Reg) -> &'r [f32]) {
+    let (dims, outputs) = (noise.dims as usize, noise.outputs as usize);
+    let options = dims * if noise.periodic { 2 } else { 1 };
+    for lane in 0..out[0].len() {
+        let at = |i: usize| {
+            let column = column(src[i]);
+            if column.len() == 1 { column[0] } else { column[lane] }
+        };
+        let coordinate = |i: usize| if i < dims { at(i) } else { 0.0 };
+        let period = |i: usize| if noise.periodic && i < dims { at(dims + i) } else { 0.0 };
+        let kind = Gabor {
+            direction: std::array::from_fn(|c| at(options + c)),
+            bandwidth: at(options + 3),
+            impulses: at(options + 4),
+            anisotropic: at(options + 5) as i32,
+            period: std::array::from_fn(period),
+        };
+        let p = std::array::from_fn(coordinate);
+        let time = coordinate(3);
+        for o in 0..outputs {
+            let whole = time.floor();
+            let seed = |step: f32| {
+                (o as u32).wrapping_mul(0x9e37_79b9) ^ ((whole + step) as i32 as u32).wrapping_mul(0x85eb_ca6b)
+            };
+            let (mut jet, part) = (kind.at(p, seed(0.0)), time - whole);
+            let mut along_time = 0.0;
+            if dims == 4 && part.is_finite() {
+                let next = kind.at(p, seed(1.0));
+                along_time = next.value - jet.value;
+                jet.value += part * along_time;
+                (0..3).for_each(|c| jet.gradient[c] += part * (next.gradient[c] - jet.gradient[c]));
+            }
+            out[o][lane] = jet.value;
+            if noise.gradient {
+                for d in 0..dims {
+                    out[outputs + o * dims + d][lane] = if d < 3 { jet.gradient[d] } else { along_time };
+                }
+            }
+        }
+    }
+}
+
 impl Run<'_> {
     pub(super) fn noise(&mut self, noise: Noise, dst: &[Reg], src: &[Reg]) {
         let mut out = std::mem::take(&mut self.s.columns);
@@ -171,6 +216,7 @@ impl Run<'_> {
             NoiseKind::USimplex => simplex(noise, &mut out, x, true),
             NoiseKind::Cell => cell(noise, &mut out, x),
             NoiseKind::Hash => hash(noise, &mut out, x),
+            NoiseKind::Gabor => gabor(noise, &mut out, src, |reg| self.regs.f(reg)),
         }
         for (reg, column) in dst.iter().zip(out.drain(..)) {
             self.regs.floats[reg.0 as usize] = column;

@@ -1,17 +1,21 @@
 //! One batch under way: what every part of the machine works on.
 
-use super::dictionaries::Dictionaries;
+use super::found::Dictionaries;
 use super::group::Group;
 use super::host::Host;
-use super::messages::Slot;
 use super::points::Points;
 use super::registers::Registers;
 use super::report::Report;
-use super::textures::Found;
+use super::slots::Slot;
 use crate::closure::tree::{Keyword, NodeId, Param, Tree};
 use crate::ir::program::Reg;
 use crate::ops::matrix::Matrix;
+use crate::texture::Texture;
+use std::sync::Arc;
 use velour_grammar::Span;
+
+/// A texture as the host gave it, or why there is none.
+pub(super) type TextureFound = Result<Arc<Texture>, String>;
 
 /// Memory that is used anew by every batch, so that a warm machine allocates nothing.
 #[derive(Default)]
@@ -50,9 +54,9 @@ pub(super) struct Scratch {
     /// Dictionaries, and what was found in them in this batch.
     pub dictionaries: Dictionaries,
     /// Textures that the host was asked for in this batch, by name and by symbol.
-    pub textures: Vec<(String, Found)>,
+    pub textures: Vec<(String, TextureFound)>,
     /// See `textures`; those of many files are not here.
-    pub texture_symbols: Vec<(i32, Found)>,
+    pub texture_symbols: Vec<(i32, TextureFound)>,
     /// How many random numbers each lane has had; empty when none has had any.
     pub draws: Vec<u32>,
 }

@@ -2,17 +2,13 @@
 
 use super::lane::Lane;
 use super::report::Mistake;
-use super::run::Run;
+use super::run::{Run, TextureFound as Found};
 use crate::ir::op::{AttributeType, TextureCall};
 use crate::ir::program::Reg;
 use crate::lang::symbols::Symbol;
 use crate::ops::color::{ColorSpace, transformc};
 use crate::texture::{Interpolation, Lookup, Sample, Texture, Up, Wrap, is_tiled, latitude_longitude, tile_name};
-use std::sync::Arc;
 use velour_grammar::Span;
-
-/// A texture as the host gave it, or why there is none.
-pub(super) type Found = Result<Arc<Texture>, String>;
 
 /// Where the parts of a call's sources begin.
 struct Layout {

@@ -19,5 +19,6 @@ pub mod noise;
 pub mod op;
 pub mod print;
 pub mod program;
+mod queries;
 pub mod routine;
 pub mod verify;

@@ -15,13 +15,15 @@ pub enum NoiseKind {
     Cell,
     /// One random number a point.
     Hash,
+    /// Gabor noise, nearly always in -1..1. Its direction, bandwidth, impulses and anisotropy follow the coordinates and periods.
+    Gabor,
 }
 
 impl NoiseKind {
     /// All kinds.
     pub const ALL: &[NoiseKind] = {
         use NoiseKind::*;
-        &[Perlin, UPerlin, Simplex, USimplex, Cell, Hash]
+        &[Perlin, UPerlin, Simplex, USimplex, Cell, Hash, Gabor]
     };
 
     /// The names that `noise` and `pnoise` know it by.
@@ -33,6 +35,7 @@ impl NoiseKind {
             NoiseKind::USimplex => &["usimplex"],
             NoiseKind::Cell => &["cell"],
             NoiseKind::Hash => &["hash"],
+            NoiseKind::Gabor => &["gabor"],
         }
     }
 
@@ -44,7 +47,9 @@ impl NoiseKind {
     /// Does it change smoothly, so that it has a gradient?
     pub fn has_gradient(self) -> bool {
         match self {
-            NoiseKind::Perlin | NoiseKind::UPerlin | NoiseKind::Simplex | NoiseKind::USimplex => true,
+            NoiseKind::Perlin | NoiseKind::UPerlin | NoiseKind::Simplex | NoiseKind::USimplex | NoiseKind::Gabor => {
+                true
+            }
             NoiseKind::Cell | NoiseKind::Hash => false,
         }
     }
@@ -79,7 +84,7 @@ impl Noise {
 
     /// How many registers it reads: coordinates, then periods.
     pub fn reads(self) -> u32 {
-        u32::from(self.dims) * if self.periodic { 2 } else { 1 }
+        u32::from(self.dims) * if self.periodic { 2 } else { 1 } + if self.kind == NoiseKind::Gabor { 6 } else { 0 }
     }
 
     /// How many registers it writes: values, then partial derivatives.

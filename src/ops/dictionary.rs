@@ -51,7 +51,7 @@ impl Dictionary {
             let (step, after) = rest.split_at(end);
             rest = after;
             if step.is_empty() {
-                return if after.is_empty() { found } else { Vec::new() };
+                return Vec::new();
             }
             found = self.step(&found, step, deep);
         }

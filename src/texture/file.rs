@@ -1,7 +1,8 @@
 //! Texture files: PNG, JPEG, HDR, TIFF (tiled and with levels, as `maketx` writes them) and EXR (with levels).
 
+use super::pyramid::Texture;
 use super::texels::{Level, Texels};
-use super::{Texture, Wrap};
+use super::wrap::Wrap;
 use exr::prelude as exr;
 use std::fmt;
 use std::fs::File;
@@ -217,7 +218,7 @@ fn read_exr(path: &Path) -> Result<Texture, String> {
         return Err("it has no texels".to_owned());
     }
     let wrap = image.attributes.other.iter().chain(&layer.attributes.other).find_map(|(name, value)| match value {
-        exr::AttributeValue::Text(text) if name.to_string() == "wrapmodes" => Some(wrap_modes(&text.to_string())),
+        exr::AttributeValue::Text(text) if name.eq("wrapmodes") => Some(wrap_modes(&text.to_string())),
         _ => None,
     });
     Ok(Texture::of_levels(levels, count).with_wrap(wrap.unwrap_or_default()))

@@ -1,7 +1,7 @@
 //! The textures of a session: found in folders, read once, held while the session lasts.
 
-use super::Texture;
 use super::file::{TextureError, read};
+use super::pyramid::Texture;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -5,8 +5,9 @@
 //! oblique stripes is a small part of that of one trilinear probe, which blurs by the long axis, and a look-up that is not oblique costs
 //! one probe; instead of summing every texel of the ellipse (Heckbert 1989), whose cost grows with the ellipse.
 
+use super::pyramid::Texture;
+use super::texels::Level;
 use super::wrap::Wrap;
-use super::{Level, Texture};
 use crate::math::elementary::exp;
 
 /// How much longer than wide an ellipse may be; a longer one is made wider.
@@ -144,7 +145,7 @@ impl Texture {
     /// The half axes of the ellipse: the singular values of the matrix of slopes, in texels. Blur adds to them as it does to the axes of a
     /// box that it is seen along.
     fn ellipse(&self, slopes: [f32; 4], how: &Lookup) -> Ellipse {
-        let size = [self.size[0] as f32, self.size[1] as f32];
+        let size = self.size().map(|side| side as f32);
         let [dsdx, dtdx, dsdy, dtdy] = slopes;
         let (ws, wt) = (how.width[0] * size[0], how.width[1] * size[1]);
         let (a, b, c, d) = (dsdx * ws, dtdx * wt, dsdy * ws, dtdy * wt);
@@ -186,7 +187,8 @@ impl Texture {
     }
 
     fn join(&self, level: &Level, s: f32, t: f32, cubic: bool, how: &Lookup) -> Sample {
-        let wrap = [0, 1].map(|axis| how.wrap[axis].unwrap_or(self.wrap[axis]));
+        let own = self.wrap();
+        let wrap = [0, 1].map(|axis| how.wrap[axis].unwrap_or(own[axis]));
         let (width, height) = (level.width() as f32, level.height() as f32);
         let first = how.first as usize;
         let read = |x: i32, y: i32| {

@@ -85,7 +85,12 @@ pub fn param(value: &Value) -> Result<ParamValue, Failure> {
             numbers.resize(size, 0);
             Values::Ints(numbers)
         }
-        _ => {
+        ParamType::Float
+        | ParamType::Color
+        | ParamType::Point
+        | ParamType::Vector
+        | ParamType::Normal
+        | ParamType::Matrix => {
             let numbers: Result<Vec<f32>, _> = parts.map(str::parse).collect();
             let mut numbers = numbers.map_err(|_| wrong())?;
             // One number for a color is all of its components.

@@ -277,9 +277,9 @@ pub(super) struct Walls<'a> {
     /// Parameters of the Fresnel term, without the side that Schlick's has at the end.
     fresnel: &'a [Floats],
     /// Colors of the reflecting and the transmitting half; black switches one off.
-    tints: [Color; 2],
+    pub(super) tints: [Color; 2],
     /// Which halves there are: 0 reflects, 1 refracts, 2 does both.
-    refract: Ints,
+    pub(super) refract: Ints,
     geometry: Option<Word<Geometry>>,
     sampling: Option<Word<Sampling>>,
     /// How often facets are met, and what stands where the keyword does not say.
@@ -328,16 +328,6 @@ impl Walls<'_> {
             scattering: (None, Scattering::Multiple),
             two_sided: false,
         }
-    }
-
-    /// The same with these halves.
-    pub(super) fn passing(self, refract: Ints) -> Self {
-        Walls { refract, ..self }
-    }
-
-    /// The same in other colors.
-    pub(super) fn tinted(self, tints: [Color; 2]) -> Self {
-        Walls { tints, ..self }
     }
 
     fn black(&self, leaf: &LeafMaker<'_>, half: Half, lane: usize) -> bool {

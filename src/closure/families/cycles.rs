@@ -82,14 +82,15 @@ fn multi_ggx_glass() -> ClosureDef {
     let doc = "rough glass that loses no light between its facets; its color is the closure's weight (Cycles)";
     ClosureDef::new("microfacet_multi_ggx_glass", doc, |a: MultiGlass, leaf| {
         let eta = [a.eta.0];
-        let walls = Walls::facets(
+        let mut walls = Walls::facets(
             Term::Dielectric,
             Word::Same(Some(Some(Facets::Ggx))),
             (a.N, Vector(a.N.0)),
             [a.ag.0; 2],
             &eta,
         );
-        walls.passing(Ints::Uniform(2)).lobes(leaf);
+        walls.refract = Ints::Uniform(2);
+        walls.lobes(leaf);
     })
     .without(super::boundaries::SHARED)
 }
@@ -141,9 +142,10 @@ fn facets_refraction(name: &'static str, facets: Facets) -> ClosureDef {
     let doc = "rough refraction, as early versions of Cycles had it";
     ClosureDef::new(name, doc, move |a: FacetsRefraction, leaf| {
         let eta = [a.eta.0];
-        let walls =
+        let mut walls =
             Walls::facets(Term::Dielectric, Word::Same(Some(Some(facets))), (a.N, Vector(a.N.0)), [a.ag.0; 2], &eta);
-        walls.passing(Ints::Uniform(1)).lobes(leaf);
+        walls.refract = Ints::Uniform(1);
+        walls.lobes(leaf);
     })
     .without(super::boundaries::SHARED)
 }
@@ -165,9 +167,10 @@ fn thin_glass() -> ClosureDef {
     let doc = "a sheet of glass, by one boundary: light that passes is bent once and not back (Cycles)";
     ClosureDef::new("thin_glass", doc, |a: ThinGlass, leaf| {
         let eta = [a.ior.0];
-        let walls =
+        let mut walls =
             Walls::facets(Term::Dielectric, Word::Same(Some(Some(Facets::Ggx))), (a.N, a.T), [a.roughness.0; 2], &eta);
-        walls.passing(Ints::Uniform(2)).tinted([a.reflection, a.transmission]).lobes(leaf);
+        (walls.refract, walls.tints) = (Ints::Uniform(2), [a.reflection, a.transmission]);
+        walls.lobes(leaf);
     })
     .without(super::boundaries::SHARED)
 }

@@ -2,9 +2,9 @@
 
 use super::state::Lower;
 use super::value::Value;
-use crate::check::typed::{Argument, Expr};
+use crate::check::typed::{Argument, Expr, ExprKind};
 use crate::ir::op::{Binary, IntBinary, Noise, NoiseKind, PrintTo, Routine, TextArg, TextFormat, Unary};
-use crate::ir::program::{Node, Reg};
+use crate::ir::program::{Kind, Node, Reg};
 use crate::lang::symbols::Symbol;
 use crate::lang::types::Base;
 
@@ -24,20 +24,48 @@ impl Lower<'_> {
         let noise = |dims: usize| Noise { kind, dims: dims as u8, outputs, periodic, gradient: false };
         let coordinates =
             args.iter().skip(named as usize).take_while(|arg| arg.ty().base() != Some(Base::String)).count();
-        let values = self.arguments(&args[..named as usize + coordinates]);
-        let src: Vec<Reg> = values[named as usize..].concat();
+        let values = self.arguments(args);
+        let options = named as usize + coordinates;
+        let src: Vec<Reg> = values[named as usize..options].concat();
         let noise = noise(src.len() / (1 + periodic as usize));
         self.at(call.span);
         if named {
             let name = values[0][0];
-            return Some(Value::Regs(self.named_noise(name, noise, &src)));
+            let gabor = self.gabor_options(&args[options..], &values[options..]);
+            return Some(Value::Regs(self.named_noise(name, noise, &src, gabor)));
         }
-        Some(Value::Regs(self.noise(noise, &src)))
+        Some(Value::Regs(self.noise(noise, &src, None)))
     }
 
-    fn noise(&mut self, mut noise: Noise, src: &[Reg]) -> Vec<Reg> {
+    /// Direction, bandwidth, impulses and anisotropy of Gabor noise, by the options of a call or as OSL has them without.
+    fn gabor_options(&mut self, args: &[Argument], values: &[Vec<Reg>]) -> [Reg; 6] {
+        let (zero, one, sixteen) = (self.b.float(0.0), self.b.float(1.0), self.b.float(16.0));
+        let mut options = [one, zero, zero, one, sixteen, zero];
+        for (pair, regs) in args.chunks(2).zip(values.chunks(2)) {
+            let (Some(Argument::In(token)), [_, value]) = (pair.first(), regs) else { continue };
+            let ExprKind::String(name) = &token.kind else { continue };
+            let floats: Vec<Reg> = value.iter().map(|&reg| self.as_float(reg)).collect();
+            match (name.as_str(), floats.as_slice()) {
+                ("direction", [x, y, z]) => options[..3].copy_from_slice(&[*x, *y, *z]),
+                ("bandwidth", [x]) => options[3] = *x,
+                ("impulses", [x]) => options[4] = *x,
+                ("anisotropic", [x]) => options[5] = *x,
+                _ => {}
+            }
+        }
+        options
+    }
+
+    fn as_float(&mut self, reg: Reg) -> Reg {
+        if self.b.program.kind(reg) == Kind::Int { self.b.int_to_float(reg) } else { reg }
+    }
+
+    fn noise(&mut self, mut noise: Noise, src: &[Reg], gabor: Option<[Reg; 6]>) -> Vec<Reg> {
         let dims = noise.dims as usize;
         let mut src = src.to_vec();
+        if let (NoiseKind::Gabor, Some(options)) = (noise.kind, gabor) {
+            src.extend(options);
+        }
         if noise.periodic && matches!(noise.kind, NoiseKind::Cell | NoiseKind::Hash) {
             // What looks at whole cells repeats when its coordinates do.
             src = (0..dims).map(|i| self.wrapped(src[i], src[dims + i])).collect();
@@ -58,22 +86,30 @@ impl Lower<'_> {
     }
 
     /// Noise whose kind is a string: known here, or compared with every name when it runs.
-    fn named_noise(&mut self, name: Reg, mut noise: Noise, src: &[Reg]) -> Vec<Reg> {
+    fn named_noise(&mut self, name: Reg, mut noise: Noise, src: &[Reg], gabor: [Reg; 6]) -> Vec<Reg> {
         if let Some(known) = self.b.known_int(name)
             && let Some(kind) =
                 NoiseKind::from_name(Symbol(known).text()).filter(|kind| !noise.periodic || kind.repeats())
         {
             noise.kind = kind;
-            return self.noise(noise, src);
+            return self.noise(noise, src, Some(gabor));
         }
+        let gabor = gabor.map(|reg| self.fixed(reg));
         let (name, zero) = (self.fixed(name), self.b.float(0.0));
         let src: Vec<Reg> = src.iter().map(|&reg| self.fixed(reg)).collect();
         let result: Vec<Reg> = (0..noise.outputs).map(|_| self.b.copy(zero, true)).collect();
-        self.noise_choice(name, noise, &src, &result, NoiseKind::ALL);
+        self.noise_choice(name, noise, (&src, gabor), &result, NoiseKind::ALL);
         result.into_iter().map(|reg| self.fixed(reg)).collect()
     }
 
-    fn noise_choice(&mut self, name: Reg, mut noise: Noise, src: &[Reg], result: &[Reg], kinds: &[NoiseKind]) {
+    fn noise_choice(
+        &mut self,
+        name: Reg,
+        mut noise: Noise,
+        (src, gabor): (&[Reg], [Reg; 6]),
+        result: &[Reg],
+        kinds: &[NoiseKind],
+    ) {
         let Some((&kind, others)) = kinds.split_first() else {
             let text = "there is no noise \"%s\"".to_owned();
             let format = TextFormat { text, args: vec![TextArg::Strings(1)] };
@@ -81,7 +117,7 @@ impl Lower<'_> {
             return;
         };
         if noise.periodic && !kind.repeats() {
-            return self.noise_choice(name, noise, src, result, others);
+            return self.noise_choice(name, noise, (src, gabor), result, others);
         }
         let mut test = self.b.int(0);
         for text in kind.names() {
@@ -91,11 +127,11 @@ impl Lower<'_> {
         }
         self.b.open();
         noise.kind = kind;
-        let value = self.noise(noise, src);
+        let value = self.noise(noise, src, Some(gabor));
         self.store(&Value::Regs(result.to_vec()), &Value::Regs(value));
         let then = self.b.close();
         self.b.open();
-        self.noise_choice(name, noise, src, result, others);
+        self.noise_choice(name, noise, (src, gabor), result, others);
         let otherwise = self.b.close();
         self.b.push(Node::If(test, then, otherwise));
     }

@@ -1,0 +1,204 @@
+//! Textures from text to number: what shaders get of them, against closed forms, brute force, and files of every kind.
+
+use std::sync::Arc;
+use velour::compile::compile;
+use velour::exec::{Host, Machine, Points, Values};
+use velour::texture::{Interpolation, Level, Lookup, Texels, Texture, Wrap};
+
+/// A texture whose texel at the middle of (s, t) is `f(s, t)`.
+fn painted(width: usize, height: usize, channels: usize, f: impl Fn(f32, f32, usize) -> f32) -> Texture {
+    let at = |i: usize, n: usize| (i as f32 + 0.5) / n as f32;
+    let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let rows = rows.flat_map(|(x, y)| (0..channels).map(move |c| (x, y, c)));
+    let values = rows.map(|(x, y, c)| f(at(x, width), at(y, height), c)).collect();
+    Texture::of_rows(width, height, channels, &Texels::Floats(values))
+}
+
+fn clamped() -> Lookup {
+    Lookup { wrap: [Some(Wrap::Clamp); 2], ..Lookup::default() }
+}
+
+#[test]
+fn a_constant_is_a_constant_to_the_last_bit() {
+    let texture = painted(37, 19, 3, |_, _, c| [0.1, 0.7, 1.0 / 3.0][c]);
+    for i in 0..500 {
+        let (s, t) = ((i * 37 % 101) as f32 / 100.0, (i * 53 % 97) as f32 / 96.0);
+        let long = 2.0f32.powi(i % 12 - 10);
+        for slopes in [[0.0; 4], [long, 0.0, 0.0, 0.01], [long, long, -long * 0.1, long * 0.1]] {
+            for interpolation in
+                [Interpolation::Closest, Interpolation::Linear, Interpolation::Cubic, Interpolation::Smart]
+            {
+                let sample = texture.lookup(s, t, slopes, &Lookup { interpolation, ..clamped() });
+                assert_eq!(sample.value[..3], [0.1, 0.7, 1.0 / 3.0], "{s} {t} {slopes:?} {interpolation:?}");
+                assert_eq!((sample.ds[0], sample.dt[1]), (0.0, 0.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ramp_is_its_coordinate_and_its_slopes_are_one() {
+    let texture = painted(64, 64, 2, |s, t, c| if c == 0 { s } else { t });
+    for interpolation in [Interpolation::Linear, Interpolation::Cubic] {
+        for i in 0..200 {
+            let (s, t) = (0.1 + 0.8 * (i * 37 % 101) as f32 / 101.0, 0.1 + 0.8 * (i * 53 % 97) as f32 / 97.0);
+            let sample = texture.lookup(s, t, [0.0; 4], &Lookup { interpolation, ..clamped() });
+            assert!(
+                (sample.value[0] - s).abs() < 1e-6 && (sample.value[1] - t).abs() < 1e-6,
+                "{s} {t} {:?}",
+                sample.value
+            );
+            assert!((sample.ds[0] - 1.0).abs() < 1e-4 && sample.ds[1].abs() < 1e-4, "{:?}", sample.ds);
+            assert!((sample.dt[1] - 1.0).abs() < 1e-4 && sample.dt[0].abs() < 1e-4, "{:?}", sample.dt);
+        }
+    }
+}
+
+/// The contrast that look-ups with these slopes leave of stripes.
+fn contrast(texture: &Texture, slopes: [f32; 4], how: &Lookup) -> f32 {
+    let values = (0..400).map(|i| texture.lookup(0.3 + i as f32 * 1e-3, 0.5, slopes, how).value[0]);
+    let (low, high) = values.fold((f32::MAX, f32::MIN), |(low, high), v| (low.min(v), high.max(v)));
+    high - low
+}
+
+#[test]
+fn stripes_along_a_long_ellipse_keep_their_contrast() {
+    let turns = std::f32::consts::TAU * 32.0;
+    let texture = painted(512, 512, 1, |s, _, _| 0.5 + 0.5 * (turns * s).cos());
+    // Sixteen texels long along the stripes, one across.
+    let along = [1.0 / 512.0, 0.0, 0.0, 16.0 / 512.0];
+    let round = [16.0 / 512.0, 0.0, 0.0, 16.0 / 512.0];
+    let (kept, control) = (contrast(&texture, along, &clamped()), contrast(&texture, round, &clamped()));
+    assert!(kept > 0.9, "{kept}");
+    assert!(control < 0.05, "{control}");
+}
+
+/// The mean under a Gaussian over the ellipse of a pixel, texel by texel in f64; its width is that of a bilinear hat over the half axes.
+fn brute(texture: &Texture, s: f32, t: f32, [dsdx, dtdx, dsdy, dtdy]: [f32; 4]) -> f64 {
+    let [w, h] = texture.size();
+    let (a, b, c, d) = (f64::from(dsdx), f64::from(dsdy), f64::from(dtdx), f64::from(dtdy));
+    let det = a * d - b * c;
+    let (mut sum, mut total) = (0.0, 0.0);
+    for y in 0..h {
+        for x in 0..w {
+            let (u, v) = ((x as f64 + 0.5) / w as f64 - f64::from(s), (y as f64 + 0.5) / h as f64 - f64::from(t));
+            let (p, q) = ((d * u - b * v) / det, (a * v - c * u) / det);
+            let weight = (-0.5 * (p * p + q * q) / 0.2).exp();
+            let mut texel = [0.0; 4];
+            texture.level(0).read(x, y, 0, &mut texel);
+            sum += weight * f64::from(texel[0]);
+            total += weight;
+        }
+    }
+    sum / total
+}
+
+#[test]
+fn oblique_ellipses_are_filtered_as_brute_force_filters_them() {
+    let texture = painted(128, 128, 1, |s, t, _| {
+        let checks = ((s * 16.0).floor() + (t * 16.0).floor()) as i32 % 2;
+        if checks == 0 { 0.2 } else { 0.8 }
+    });
+    let (mut error, mut control, mut count) = (0.0, 0.0, 0);
+    for i in 0..120 {
+        let (s, t) = (0.3 + 0.4 * (i * 37 % 101) as f32 / 101.0, 0.3 + 0.4 * (i * 53 % 97) as f32 / 97.0);
+        let (sin, cos) = (i as f32 * 0.7).sin_cos();
+        let (long, short) = (0.06, 0.012);
+        let slopes = [long * cos, long * sin, -short * sin, short * cos];
+        let truth = brute(&texture, s, t, slopes);
+        let of = |slopes| f64::from(texture.lookup(s, t, slopes, &clamped()).value[0]);
+        error += (of(slopes) - truth).powi(2);
+        // One probe that covers the long axis, as trilinear filtering takes it.
+        control += (of([long, 0.0, 0.0, long]) - truth).powi(2);
+        count += 1;
+    }
+    let rms = |sum: f64| (sum / f64::from(count)).sqrt();
+    assert!(rms(error) < 0.02, "{}", rms(error));
+    assert!(rms(control) > 3.0 * rms(error), "{} {}", rms(control), rms(error));
+}
+
+#[test]
+fn a_small_footprint_touches_only_the_levels_it_needs() {
+    let texture = painted(1024, 1024, 1, |s, t, _| s * t);
+    assert_eq!(texture.resident().0, 1);
+    texture.lookup(0.5, 0.5, [1.0 / 1024.0, 0.0, 0.0, 1.0 / 1024.0], &clamped());
+    assert_eq!(texture.resident().0, 1, "a pixel of one texel reads the finest level alone");
+    texture.lookup(0.5, 0.5, [4.0 / 1024.0, 0.0, 0.0, 4.0 / 1024.0], &clamped());
+    assert_eq!(texture.resident().0, 3);
+}
+
+/// A host of one texture under the name "t", which is 2 wide and 1 high: red and alpha of .25, then green and alpha of 1.
+struct OneTexture;
+
+impl Host for OneTexture {
+    fn texture(&self, name: &str) -> Result<Arc<Texture>, String> {
+        let rows = Texels::Floats(vec![1.0, 0.0, 0.0, 0.25, 0.0, 1.0, 0.0, 1.0]);
+        let level = Level::of_rows(2, 1, 4, &rows);
+        match name {
+            "t" | "t1001" => Ok(Arc::new(Texture::of_levels(vec![level], 4))),
+            _ => Err(format!("no {name}")),
+        }
+    }
+}
+
+/// What a body prints at (u, v), and what goes wrong.
+fn printed(body: &str, uv: [f32; 2]) -> String {
+    let shader = compile(&format!("shader s(output color c = 0) {{ {body} }}")).unwrap();
+    let group = shader.group().keep_outputs().build().unwrap();
+    let mut machine = Machine::with_host(Arc::new(OneTexture));
+    let mut points = Points::new(1);
+    (points.u[0], points.v[0]) = (uv[0], uv[1]);
+    (points.dudx[0], points.dvdy[0]) = (0.5, 0.5);
+    machine.shade(&group, &points);
+    assert!(matches!(machine.output(&group, "c").map(|c| c.lane(0)), Some(Values::Floats(_))));
+    machine.take_reports().iter().map(|report| format!("{}|", report.text.trim_end())).collect()
+}
+
+#[test]
+fn options_of_texture_mean_what_they_say() {
+    for (body, text) in [
+        (r#"color k = texture("t", .25, .5, 0, 0, 0, 0, "interp", "closest"); printf("%g", k);"#, "1 0 0|"),
+        (
+            r#"float a; color k = texture("t", .25, .5, 0,0,0,0, "interp", "closest", "alpha", a); printf("%g", a);"#,
+            "0.25|",
+        ),
+        (r#"float k = texture("t", .75, .5, 0,0,0,0, "interp", "closest", "firstchannel", 1); printf("%g", k);"#, "1|"),
+        (
+            r#"float k = texture("t", 1.75, .5, 0,0,0,0, "interp", "closest", "firstchannel", 1, "swrap", "periodic"); printf("%g", k);"#,
+            "1|",
+        ),
+        (r#"color k = texture("t", 1.75, .5, 0,0,0,0, "interp", "closest"); printf("%g", k);"#, "0 0 0|"),
+        (
+            r#"color k = texture("t", .75, .5, 0,0,0,0, "firstchannel", 2, "fill", .5, "interp", "closest"); printf("%g", k);"#,
+            "0 1 0.5|",
+        ),
+        (
+            r#"color k = texture("t", .5, .5, 0,0,0,0, "interp", "linear", "wrap", "clamp"); printf("%g", k);"#,
+            "0.5 0.5 0|",
+        ),
+        (r#"color k = texture("gone", u, v, "missingcolor", color(1,2,3)); printf("%g", k);"#, "1 2 3|"),
+        (
+            r#"float a; float k = texture("gone", u, v, "missingalpha", .5, "alpha", a); printf("%g %g", k, a);"#,
+            "0 0.5|",
+        ),
+        (r#"string e; float k = texture("gone", u, v, "errormessage", e); printf("%g %s", k, e);"#, "0 no gone|"),
+        (r#"float k = texture("gone", u, v); printf("%g", k);"#, "no gone|0|"),
+        (r#"float k = texture("t<UDIM>", .25, .5, 0,0,0,0, "interp", "closest"); printf("%g", k);"#, "1|"),
+        (r#"int n; printf("%d %d", gettextureinfo("t", "channels", n), n);"#, "1 4|"),
+        (r#"int r[2]; gettextureinfo("t", "resolution", r); printf("%d %d", r[0], r[1]);"#, "2 1|"),
+        (r#"int e = 7; printf("%d %d", gettextureinfo("gone", "exists", e), e);"#, "1 0|"),
+        (r#"int e = 7; printf("%d %d", gettextureinfo("gone", "channels", e), e);"#, "0 7|"),
+    ] {
+        assert_eq!(printed(body, [0.5, 0.5]), text, "{body}");
+    }
+}
+
+#[test]
+fn results_change_with_what_their_coordinates_do() {
+    // Along s the red falls from 1 to 0 between the texels, by 2 a unit of s; u moves by a half a pixel.
+    let body = r#"color k = texture("t", u, v, 0, 0, 0, 0, "interp", "linear", "wrap", "clamp"); printf("%g %g", Dx(k), Dy(k));"#;
+    assert_eq!(printed(body, [0.5, 0.5]), "0 0 0 0 0 0|", "given slopes of zero are the derivatives");
+    let body =
+        r#"color k = texture("t", u * .1 + .45, v, "interp", "linear", "wrap", "clamp"); printf("%.3g", Dx(k));"#;
+    assert_eq!(printed(body, [0.5, 0.5]), "-0.1 0.1 0|");
+}
