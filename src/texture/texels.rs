@@ -97,6 +97,20 @@ impl Level {
         }
     }
 
+    /// The mean of texels by their weights: sums of differences from one, so that of equal ones it is what each is.
+    fn mean_of(&self, rows: &[(usize, f32)], columns: &[(usize, f32)], first: usize) -> [f32; 4] {
+        let (mut base, mut sum) = ([0.0; 4], [0.0; 4]);
+        self.read(columns[0].0, rows[0].0, first, &mut base);
+        for &(row, wy) in rows {
+            for &(column, wx) in columns {
+                let mut texel = base;
+                self.read(column, row, first, &mut texel);
+                (0..4).for_each(|c| sum[c] += wx * wy * (texel[c] - base[c]));
+            }
+        }
+        std::array::from_fn(|c| base[c] + sum[c])
+    }
+
     /// The level of half the size, each texel the mean of those it covers. Of an odd number of columns or rows each new one covers a
     /// little more than two, so that the mean of all stays what it is.
     pub fn halved(&self) -> Level {
@@ -107,15 +121,9 @@ impl Level {
         for y in 0..height {
             let rows = covered(y, height, self.height);
             for (x, columns) in columns.iter().enumerate() {
-                let sum = &mut sums[(y * width + x) * n..][..n];
-                for &(row, wy) in &rows {
-                    for &(column, wx) in columns {
-                        for first in (0..n).step_by(4) {
-                            let mut texel = [0.0; 4];
-                            self.read(column, row, first, &mut texel);
-                            sum[first..].iter_mut().zip(texel).for_each(|(sum, x)| *sum += wx * wy * x);
-                        }
-                    }
+                for first in (0..n).step_by(4) {
+                    let mean = self.mean_of(&rows, columns, first);
+                    sums[(y * width + x) * n..][..n][first..].iter_mut().zip(mean).for_each(|(sum, x)| *sum = x);
                 }
             }
         }
