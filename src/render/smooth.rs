@@ -210,6 +210,49 @@ fn shadowing(flat: f32, smooth: f32, lean: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::accel::Hit;
+
+    /// In the middle between two vertices of a ball that are 2 delta apart, light arrives at cos(delta) (1 + sin^2 delta) from the centre,
+    /// outside of the ball but by delta^2 / 2; at a vertex it arrives there.
+    #[test]
+    fn light_arrives_just_outside_of_a_ball() {
+        for delta in [0.05f32, 0.2, 0.5] {
+            let at = |x: f32, y: f32| Vec3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt());
+            let corners = [at(delta.sin(), 0.0), at(0.0, delta.sin()), at(-delta.sin(), 0.0)];
+            let [a, b, c] = corners;
+            let ng = (b - a).cross(c - a).normalize();
+            let shape = Shape::Triangle { a, b, c };
+            let primitive = Primitive { shape, object: 0, normals: 0, uvs: Primitive::NONE };
+            let geometry = Geometry {
+                primitives: vec![primitive],
+                normals: vec![corners.map(|n| 3.0 * n)],
+                ..Geometry::default()
+            };
+            for (u, v, radius) in
+                [(0.0, 0.5, delta.cos() * (1.0 + delta.sin().powi(2))), (0.0, 0.0, 1.0), (1.0, 0.0, 1.0)]
+            {
+                let p = (1.0 - u - v) * a + u * b + v * c;
+                for inside in [false, true] {
+                    let side = if inside { -1.0 } else { 1.0 };
+                    let hit = Hit { t: 1.0, primitive: 0, u, v };
+                    let (origin, direction, ray_type) = (p + side * ng, -side * ng, 1);
+                    let segment = Segment { origin, direction, hit, width: 0.0, spread: 0.0, ray_type };
+                    let mut points = Points::new(1);
+                    points.p.set(0, p);
+                    points.ng.set(0, side * ng);
+                    points.n.set(0, side * ((1.0 - u - v) * a + u * b + v * c).normalize());
+                    points.backfacing[0] = i32::from(inside);
+                    let mut smooth = Smooth::default();
+                    smooth.find(Terminator::Origin, &points, &geometry, std::iter::once(&segment));
+                    smooth.swap(&mut points);
+                    let arrives = points.p.get(0);
+                    // From inside the ball is hollow, and its facets lie before it.
+                    let expected = if inside { p.length() } else { radius };
+                    assert!((arrives.length() - expected).abs() < 1e-5, "{delta} {u} {v} {inside}: {arrives}");
+                }
+            }
+        }
+    }
 
     /// The factor never adds light, falls to nothing where the facet turns away, and does nothing where both normals are one.
     #[test]
