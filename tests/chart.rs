@@ -80,7 +80,7 @@ fn fronts_are_fronts() {
 
 #[test]
 fn measured_figures_are_finite_and_marked() {
-    assert_eq!(FIGURES.len(), 7);
+    assert_eq!(FIGURES.len(), 8);
     for figure in FIGURES.iter() {
         assert!(figure.points.len() > 2 && !figure.meaning.is_empty(), "{}", figure.name);
         for p in &figure.points {
@@ -120,6 +120,13 @@ fn errors_agree_with_known_figures() {
         |m: &str| layering.points.iter().find(|p| p.group == "gain over a mirror" && p.method.starts_with(m)).unwrap();
     assert_eq!(gain("min").error, 0.0);
     assert!((0.04..0.2).contains(&gain("kelemen").error));
+    // At the terminator of a coarse ball, the default is nearest to a fine one, and it alone loses nothing in a furnace.
+    let terminator = FIGURES.iter().find(|f| f.name == "terminator").unwrap();
+    let of = |g: &str, m: &str| terminator.points.iter().find(|p| p.group == g && p.method == m).unwrap().error;
+    let squares = |m: &str| of("squared error at the terminator", m);
+    assert!(5.0 * squares("origin") < squares("none").min(squares("factor")));
+    let lost = |m: &str| of("energy in a white furnace", m);
+    assert!(lost("origin") < 1e-3 && lost("none") > 2e-3 && lost("factor") > lost("none"));
 }
 
 /// Figure 2 of the paper: (2 + 1/r) / tau at the horizon, nothing along the normal unless r is large, and the integral of D cos is 1.

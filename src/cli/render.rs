@@ -8,7 +8,7 @@ use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
-use crate::render::{Explanation, Image, LightChoice, LightPoints, Progress, Renderer, Settings, output};
+use crate::render::{Explanation, Image, LightChoice, LightPoints, Progress, Renderer, Settings, Terminator, output};
 use crate::scene::{Scene, ShaderFiles};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -86,6 +86,10 @@ pub struct RenderArgs {
     /// How a point of a flat light is chosen: solid (by solid angle) or area
     #[arg(long, default_value = "solid")]
     light_points: LightPoints,
+    /// What is done about facets at the terminator of meshes with smooth normals: origin (light arrives at the smooth surface),
+    /// factor (it fades before a facet turns away) or none
+    #[arg(long, default_value = "origin")]
+    terminator: Terminator,
     /// Say what the scene needs, and what it does not, before rendering
     #[arg(long)]
     explain: bool,
@@ -210,6 +214,7 @@ fn settings(args: &RenderArgs) -> Settings {
         alpha: args.alpha,
         light_choice: args.light_choice,
         light_points: args.light_points,
+        terminator: args.terminator,
         closure: closure::Settings {
             layering: args.layering,
             shadowing: args.shadowing.unwrap_or_default(),

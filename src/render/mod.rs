@@ -30,6 +30,16 @@
 //! it swaps materials and cameras between rounds; instead of borrowing the scene, which then could not change. A change
 //! makes the world anew but for the hierarchy, whose making is what takes long.
 //!
+//! Decision (2026-11-29): on meshes with smooth normals light arrives at the smooth surface (Hanika 2021) and not at the facets, which
+//! bends every use of the point: sampling of lights, densities, shadow and scattered rays, the side that lobes ask for. Figure
+//! `terminator` of `velour chart`, against a ball of 256 x 128 patches, for one of 16 x 8: squared error .024 of the squared mean,
+//! for 355 ns a camera ray; with nothing .168 and 352 ns; with the factor of Chiang, Li and Burley 2019, which darkens what is too
+//! bright and too dark alike, .32 and 375 ns. (For 32 x 16 patches: .0007, .67 and .98.) A white ball in a white furnace has 1.0000,
+//! .9953 and .9722 of its light. On woven tubes of 8 sides, against 48, .0020, .0044 and .0094. Lifting points by part of the way is
+//! worse: .079 for half, .047 for three quarters. What is given up: a point may come to lie in something that touches
+//! its facet, and light that passes through a facet starts on it, so that strategies differ there (1.3 % for a ball of 8 x 4
+//! patches close to its lamp, .4 % for 16 x 8). Batches without such meshes take loops that know nothing of it.
+//!
 //! An image depends on scene, seed and sample count. It does not depend on thread count, batch width, wave size, rounds or
 //! tile order: a path draws its numbers by pixel, sample and bounce, adds up its own light in order, and a pixel adds up its
 //! samples in order. The size of a tile shows as good as never, see `film`. A render that stops at a noise depends on
@@ -64,6 +74,7 @@ mod segment;
 mod settings;
 mod shading;
 mod sky;
+mod smooth;
 mod stages;
 mod through;
 mod tile;
@@ -78,4 +89,4 @@ pub use image::{About, Image};
 pub use plan::{MaterialPlan, Needs, Plan};
 pub use progress::{Progress, Silent};
 pub use renderer::{Renderer, render};
-pub use settings::{LightChoice, LightPoints, LightStrategy, Settings};
+pub use settings::{LightChoice, LightPoints, LightStrategy, Settings, Terminator};

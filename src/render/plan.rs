@@ -1,11 +1,12 @@
 //! What a scene needs: decided once, before rendering, so that nothing else is computed.
 
 use super::light::by_tree;
-use super::settings::{LightPoints, LightStrategy, Settings};
+use super::settings::{LightPoints, LightStrategy, Settings, Terminator};
 use super::sky::{LEAST_SIDE, MOST_SIDE};
+use super::smooth::is_smooth;
 use crate::exec::Group;
 use crate::lang::globals::Global;
-use crate::scene::Scene;
+use crate::scene::{Primitive, Scene};
 use std::fmt;
 
 /// Which columns of a shading point a material reads beside `I`, `N` and `Ng`, which lobes always need.
@@ -69,6 +70,8 @@ pub struct MaterialPlan {
     pub holds_out: bool,
     /// Light may pass it straight on.
     pub clear: bool,
+    /// It scatters on meshes with smooth normals, whose terminator has a remedy.
+    pub smooth: bool,
     /// What it reads.
     pub needs: Needs,
 }
@@ -89,6 +92,8 @@ pub struct Plan {
     pub light_tree: bool,
     /// How points of lights are chosen.
     pub light_points: LightPoints,
+    /// What is done for those materials that are smooth.
+    pub terminator: Terminator,
     /// The background's radiance is one constant.
     pub constant_background: bool,
     /// Directions a side in which the background is looked at for its importance table, a power of two; 0 when none is needed.
@@ -98,7 +103,7 @@ pub struct Plan {
 impl Plan {
     /// Makes the plan of `scene`.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
-        let materials: Vec<MaterialPlan> = scene
+        let mut materials: Vec<MaterialPlan> = scene
             .materials
             .iter()
             .map(|m| MaterialPlan {
@@ -106,14 +111,18 @@ impl Plan {
                 scatters: m.surface.can_scatter(),
                 holds_out: m.surface.can_hold_out(),
                 clear: m.surface.can_pass(),
+                smooth: false,
                 needs: Needs::of(&m.surface),
             })
             .collect();
+        if settings.terminator != Terminator::None {
+            find_smooth(scene, &mut materials);
+        }
         // `is_light` only asks; what cannot emit is no light whatever the scene says.
         let is_light = |material: u32| materials[material as usize].emits;
         let sampling = settings.lights != LightStrategy::ScatteringOnly;
         let objects = &scene.geometry.objects;
-        let lit = |p: &&crate::scene::Primitive| is_light(objects[p.object as usize].material);
+        let lit = |p: &&Primitive| is_light(objects[p.object as usize].material);
         let lights = if sampling { scene.geometry.primitives.iter().filter(lit).count() } else { 0 };
         let background = scene.background.map(|b| (b, &scene.materials[b.material as usize].surface));
         let constant = background.is_none_or(|(_, g)| same_all_over(g) || !g.can_emit());
@@ -131,8 +140,20 @@ impl Plan {
             lights,
             light_tree: by_tree(lights, settings.light_choice),
             light_points: settings.light_points,
+            terminator: settings.terminator,
             constant_background: constant,
             background_table,
+        }
+    }
+}
+
+/// Marks the materials that scatter on smooth facets; looks no further than to the first one of each.
+fn find_smooth(scene: &Scene, materials: &mut [MaterialPlan]) {
+    let geometry = &scene.geometry;
+    for primitive in geometry.primitives.iter().filter(|p| p.normals != Primitive::NONE) {
+        let material = &mut materials[geometry.objects[primitive.object as usize].material as usize];
+        if material.scatters && !material.smooth {
+            material.smooth = is_smooth(geometry, primitive);
         }
     }
 }
@@ -177,6 +198,22 @@ impl fmt::Display for Plan {
             let names: Vec<String> =
                 (0..self.materials.len()).filter(|i| self.materials[*i].clear).map(|i| i.to_string()).collect();
             writeln!(f, "clear surfaces: material {}, which shadow rays pass with their color", names.join(", "))?;
+        }
+        let smooth: Vec<String> =
+            (0..self.materials.len()).filter(|&i| self.materials[i].smooth).map(|i| i.to_string()).collect();
+        match (self.terminator, smooth.is_empty()) {
+            (Terminator::None, _) => {}
+            (_, true) => writeln!(f, "smooth meshes: none that scatters, so no remedy for terminators")?,
+            (method, false) => writeln!(
+                f,
+                "smooth meshes: material {}, {}",
+                smooth.join(", "),
+                or(
+                    method == Terminator::Factor,
+                    "where light fades before a facet turns away",
+                    "where light arrives at the smooth surface"
+                )
+            )?,
         }
         for (i, m) in self.materials.iter().enumerate() {
             let uv = or(m.needs.uv, "uv", "no uv");

@@ -51,6 +51,36 @@ impl LightPoints {
     pub const ALL: [(&'static str, LightPoints); 2] = [("area", LightPoints::Area), ("solid", LightPoints::Solid)];
 }
 
+/// What is done about the steps that facets of smooth meshes show where light begins to graze them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Terminator {
+    /// Nothing: light from behind a facet is dark, whatever its smooth normals see.
+    None,
+    /// Light that grazes a facet fades out before it turns away. Source: Chiang, Li and Burley 2019.
+    Factor,
+    /// Light arrives at the smooth surface that lies over the facet. Source: Hanika 2021.
+    #[default]
+    Origin,
+}
+
+impl Terminator {
+    /// All variants with the word that selects them.
+    pub const ALL: [(&'static str, Terminator); 3] =
+        [("none", Terminator::None), ("factor", Terminator::Factor), ("origin", Terminator::Origin)];
+}
+
+impl FromStr for Terminator {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == text);
+        found.map(|&(_, v)| v).ok_or_else(|| {
+            format!("unknown remedy for terminators \"{text}\"; take \"none\", \"factor\" or \"origin\"")
+        })
+    }
+}
+
 impl FromStr for LightChoice {
     type Err = String;
 
@@ -105,6 +135,8 @@ pub struct Settings {
     pub light_choice: LightChoice,
     /// How a point of it is.
     pub light_points: LightPoints,
+    /// What is done about facets at the terminator of smooth meshes.
+    pub terminator: Terminator,
     /// A shader global to show in place of the picture: 0 none, 1 Ng, 2 N, 3 dPdu, 4 dPdv, 5 uv.
     pub show_globals: u32,
     /// Lanes of one shading batch, at most `exec::MAX_LANES`; never changes the image.
@@ -134,6 +166,7 @@ impl Default for Settings {
             lights: LightStrategy::Combined,
             light_choice: LightChoice::Tree,
             light_points: LightPoints::Solid,
+            terminator: Terminator::Origin,
             show_globals: 0,
             batch_width: exec::MAX_LANES,
             tile_size: 16,

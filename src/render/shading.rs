@@ -1,5 +1,6 @@
 //! The only door from the renderer to shaders and closures: a batch of points in, emission, light and directions out.
 
+use super::smooth::Smooth;
 use crate::closure::tree::Tree;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::exec::{Group, Host, Machine, Points, Report};
@@ -15,6 +16,8 @@ const MOST_REPORTS: usize = 1000;
 pub struct Shading {
     /// The batch to shade: fill it, then call `shade`.
     pub points: Points,
+    /// The smooth surface over the points, where that matters; `resize` forgets it.
+    pub smooth: Smooth,
     /// Toward the lights, one direction a lane.
     pub toward: Column3,
     /// Random numbers, three a lane.
@@ -39,6 +42,7 @@ impl Shading {
     pub fn new(settings: Settings, host: Arc<dyn Host>) -> Self {
         Shading {
             points: Points::default(),
+            smooth: Smooth::default(),
             toward: Column3::default(),
             random: Column3::default(),
             evaluation: Evaluation::default(),
@@ -56,6 +60,7 @@ impl Shading {
     /// Makes room for a batch of `len` lanes.
     pub fn resize(&mut self, len: usize) {
         self.points.resize(len);
+        self.smooth.clear();
         self.toward.resize(len);
         self.random.resize(len);
         self.viewer.resize(len);
@@ -75,6 +80,7 @@ impl Shading {
             return;
         }
         let tree = self.machine.shade(group, &self.points);
+        self.smooth.swap(&mut self.points);
         let Points { ng, backfacing, .. } = &self.points;
         self.lobes.flatten_sides(group.library(), tree, &self.viewer, ng, backfacing);
         let mut news = Vec::new();
@@ -124,11 +130,14 @@ impl Shading {
     /// Evaluates all lobes toward `toward`.
     pub fn evaluate(&mut self) {
         self.lobes.evaluate(&self.toward, &mut self.evaluation);
+        self.smooth.dim(&self.points, &self.toward, &mut self.evaluation.f_cos);
     }
 
     /// Samples a direction a lane by `random`.
     pub fn sample(&mut self) {
         self.lobes.sample(&self.random, &mut self.samples);
+        let Samples { wi, weight, event, .. } = &mut self.samples;
+        self.smooth.dim_scattered(&self.points, wi, event, weight);
     }
 
     /// What passes the surfaces straight on toward the viewer, a color a lane.

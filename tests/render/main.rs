@@ -17,3 +17,4 @@ mod rounds;
 mod shaders;
 mod sky;
 mod speed;
+mod terminator;

@@ -240,7 +240,7 @@ impl FacetTable {
 
 /// Which of so many places comes next before `place` (0..1), and the weights of it and three around it: one before, two behind.
 ///
-/// Source: Catmull and Rom 1974; at the ends a straight line goes on.
+/// Source: Catmull and Rom 1974; at the ends a parabola goes on.
 #[inline(always)]
 pub(super) fn cubic(place: f32, count: usize) -> (u32, [f32; 4]) {
     let last = count as u32 - 2;
@@ -250,7 +250,7 @@ pub(super) fn cubic(place: f32, count: usize) -> (u32, [f32; 4]) {
     let (f2, f3) = (f * f, f * f * f);
     let w = [f2 - 0.5 * (f3 + f), 1.5 * f3 - 2.5 * f2 + 1.0, 2.0 * f2 - 1.5 * f3 + 0.5 * f, 0.5 * (f3 - f2)];
     let (first, last) = (select(i == 0, w[0], 0.0), select(i == last, w[3], 0.0));
-    let inner = [w[0] - first, w[1] + 2.0 * first - last, w[2] - first + 2.0 * last, w[3] - last];
+    let inner = [w[0] - first + last, w[1] + 3.0 * (first - last), w[2] - 3.0 * (first - last), w[3] - last + first];
     (i, inner)
 }
 

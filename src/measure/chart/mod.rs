@@ -25,6 +25,7 @@ mod sampling;
 mod scene;
 pub mod table;
 mod tables;
+mod terminator;
 pub mod truth;
 mod visibility;
 mod widths;

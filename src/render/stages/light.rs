@@ -6,6 +6,7 @@ use crate::render::light::Lookers;
 use crate::render::path::ShadowRay;
 use crate::render::random::{Use, dimension_set};
 use crate::render::settings::LightStrategy;
+use crate::render::shading::Shading;
 use crate::render::sky::{Sky, SkyTable};
 use crate::render::wave::Wave;
 use crate::render::world::World;
@@ -34,6 +35,11 @@ fn sample_lights(world: &World, wave: &mut Wave) {
     world.lights.sample(lookers, &lanes.draws.numbers, lit);
     wave.shading.toward.clone_from(&wave.lit.direction);
     weigh(world, wave);
+    if wave.shading.smooth.moves_any() { queue_lights::<true>(world, wave) } else { queue_lights::<false>(world, wave) }
+}
+
+/// Queues the shadow rays to the lights that the batch has sampled; `MOVES` where some start elsewhere than on their facets.
+fn queue_lights<const MOVES: bool>(world: &World, wave: &mut Wave) {
     for lane in 0..wave.lanes.paths.len() {
         let weight = wave.weights.get(lane);
         // Most lanes that bring nothing face away from the light.
@@ -46,7 +52,7 @@ fn sample_lights(world: &World, wave: &mut Wave) {
         if !contribution.is_finite() {
             wave.dropped.add(wave.lanes.material);
         } else if contribution != Vec3::ZERO {
-            let ray = shadow_ray(world, wave, lane, wave.lit.distance[lane], target);
+            let ray = shadow_ray::<MOVES>(world, wave, lane, wave.lit.distance[lane], target);
             let (path, u, v) = (wave.lanes.paths[lane], wave.lit.u[lane], wave.lit.v[lane]);
             wave.light_shadows.rays.push(ShadowRay { ray, contribution, known: emission.is_some(), path, u, v });
         }
@@ -69,7 +75,7 @@ fn sample_sky(world: &World, wave: &mut Wave, table: &SkyTable) {
         if !contribution.is_finite() {
             wave.dropped.add(wave.lanes.material);
         } else if contribution != Vec3::ZERO {
-            let ray = shadow_ray(world, wave, lane, f32::INFINITY, NOTHING);
+            let ray = shadow_ray::<true>(world, wave, lane, f32::INFINITY, NOTHING);
             let path = wave.lanes.paths[lane];
             wave.sky_shadows.rays.push(ShadowRay { ray, contribution, known: false, path, u: 0.0, v: 0.0 });
         }
@@ -78,11 +84,23 @@ fn sample_sky(world: &World, wave: &mut Wave, table: &SkyTable) {
 
 /// The ray from a lane's point toward its sampled light.
 #[inline]
-fn shadow_ray(world: &World, wave: &Wave, lane: usize, reach: f32, target: u32) -> Ray {
-    let (points, direction) = (&wave.shading.points, wave.shading.toward.get(lane));
-    let skip = wave.lanes.primitives[lane];
-    let origin = world.accel.leave(points.p.get(lane), points.ng.get(lane), direction, skip);
-    Ray { origin, direction, reach, skip, target }
+fn shadow_ray<const MOVES: bool>(world: &World, wave: &Wave, lane: usize, reach: f32, target: u32) -> Ray {
+    let Shading { points, smooth, toward, .. } = &wave.shading;
+    let direction = toward.get(lane);
+    let (origin, skip) = smooth.leave::<MOVES>(points, &world.accel, lane, direction, wave.lanes.primitives[lane]);
+    let ray = Ray { origin, direction, reach, skip, target };
+    if MOVES && smooth.moves(lane) && reach.is_finite() {
+        aimed(ray, points.p.get(lane) + direction * reach)
+    } else {
+        ray
+    }
+}
+
+/// A ray to a point that was seen from elsewhere than where the ray starts.
+fn aimed(ray: Ray, to: Vec3) -> Ray {
+    let way = to - ray.origin;
+    let reach = way.length();
+    if reach > 0.0 { Ray { direction: way / reach, reach, ..ray } } else { ray }
 }
 
 /// Evaluates the lobes toward the sampled lights; what a unit of radiance there adds goes to `weights`.

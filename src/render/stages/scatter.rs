@@ -22,14 +22,15 @@ const DEEP: u32 = 10_000;
 /// Samples a direction for each path and sends on those that still carry something.
 pub fn scatter(world: &World, wave: &mut Wave) {
     draw(world, wave);
-    if wave.crossings.is_empty() && wave.facings.is_empty() {
+    if wave.crossings.is_empty() && wave.facings.is_empty() && !wave.shading.smooth.moves_any() {
         send::<false>(world, wave);
     } else {
         send::<true>(world, wave);
     }
 }
 
-/// Sends the paths of the batch on; `REMEMBERS` where they keep more than a path does, which most scenes have no use for.
+/// Sends the paths of the batch on; `REMEMBERS` where they keep more than a path does, or start elsewhere than on their facets, which
+/// most scenes have no use for.
 fn send<const REMEMBERS: bool>(world: &World, wave: &mut Wave) {
     let Wave { paths, crossings, facings, next, lanes, shading, dropped, .. } = wave;
     let material = lanes.material;
@@ -76,8 +77,8 @@ fn send<const REMEMBERS: bool>(world: &World, wave: &mut Wave) {
             throughput /= survival;
         }
         path.throughput = throughput;
-        let (p, ng) = (shading.points.p.get(lane), shading.points.ng.get(lane));
-        let origin = world.accel.leave(p, ng, wi, path.segment.hit.primitive);
+        let primitive = path.segment.hit.primitive;
+        let (origin, from) = shading.smooth.leave::<REMEMBERS>(&shading.points, &world.accel, lane, wi, primitive);
         let chosen = matches!(event, event::DIFFUSE | event::GLOSSY);
         if let Some(facing) = facings.get_mut(i as usize).filter(|_| REMEMBERS && chosen) {
             *facing = lanes.facing.get(lane);
@@ -85,6 +86,7 @@ fn send<const REMEMBERS: bool>(world: &World, wave: &mut Wave) {
         if !passes {
             path.pdf_solid_angle = if chosen { pdf } else { f32::INFINITY };
         }
+        path.from = from;
         turn(path, origin, wi, event);
         next.push(i);
     }
@@ -118,7 +120,6 @@ fn crossed(before: &Crossing, passes: bool, hit: &Hit) -> Crossing {
 #[inline(always)]
 fn turn(path: &mut Path, origin: Vec3, wi: Vec3, event: u8) {
     let segment = &mut path.segment;
-    path.from = segment.hit.primitive;
     segment.origin = origin;
     segment.direction = wi;
     segment.width += segment.spread * segment.hit.t;

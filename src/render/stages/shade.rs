@@ -12,6 +12,10 @@ pub fn shade(world: &World, wave: &mut Wave) {
     shading.resize(lanes.paths.len());
     let segments = lanes.paths.iter().map(|&i| &paths[i as usize].segment);
     fill(&mut shading.points, &world.scene.geometry, segments, &plan.needs);
+    if plan.smooth {
+        let segments = lanes.paths.iter().map(|&i| &paths[i as usize].segment);
+        shading.smooth.find(world.settings.terminator, &shading.points, &world.scene.geometry, segments);
+    }
     shading.shade(group);
     for (lane, &i) in lanes.paths.iter().enumerate() {
         let path = &mut paths[i as usize];
