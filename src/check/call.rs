@@ -275,6 +275,8 @@ impl Checker<'_> {
                 self.report(Diagnostic::warning("W0506", token.span, message).help(format!("left out: {what}")));
             }
             let value = self.convert(value, &param_type(spec.keywords[at].kind));
+            // Of a keyword that is given more than once the last value counts, as in OSL.
+            keywords.retain(|(known, _): &(u32, Expr)| *known != at as u32);
             keywords.push((at as u32, value));
         }
         Expr::new(ExprKind::Closure(id, params, keywords), Type::CLOSURE, span)

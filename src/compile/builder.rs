@@ -1,11 +1,11 @@
 //! Building a group: layers, parameters, connections.
 
 use super::error::{GroupError, GroupProblem, GroupSubject};
-use super::fit::{checked_binding, checked_type, connects, find_type, param_error};
+use super::fit::{allows_connection, checked_binding, checked_type, connects, find_type, param_error};
 use super::shader::Shader;
 use crate::closure::Library;
 use crate::exec::{Group, Locate, ReportPlace};
-use crate::ir::lower::{Binding, Layer, LowerOptions, SPANS_PER_LAYER, lower};
+use crate::ir::lower::{Binding, Layer, Lazy, LowerOptions, SPANS_PER_LAYER, lower};
 use crate::lang::types::{Base, Type};
 use crate::optimize::{OptimizeOptions, optimize};
 use std::sync::Arc;
@@ -15,6 +15,7 @@ use velour_grammar::{Sources, Span};
 #[derive(Clone, Debug)]
 pub struct GroupBuilder {
     closures: Arc<Library>,
+    name: String,
     layers: Vec<Layer>,
     sources: Vec<Sources>,
     lower: LowerOptions,
@@ -27,12 +28,19 @@ impl GroupBuilder {
     pub fn new(closures: Arc<Library>) -> Self {
         GroupBuilder {
             closures,
+            name: String::new(),
             layers: Vec::new(),
             sources: Vec::new(),
-            lower: LowerOptions { simplify: true, outputs: false },
+            lower: LowerOptions { simplify: true, outputs: false, lazy: Lazy::default(), userdata_connects: false },
             optimize: OptimizeOptions::default(),
             error: None,
         }
+    }
+
+    /// Gives the group a name, which shaders may ask for.
+    pub fn group_name(mut self, name: &str) -> Self {
+        self.name = name.to_owned();
+        self
     }
 
     /// Adds a layer after the others.
@@ -117,8 +125,24 @@ impl GroupBuilder {
             let problem = GroupProblem::CannotFeed { path: to.1.to_owned(), wanted, given };
             return Err(param_error(&self.layers[target], to.1, problem));
         }
+        if !allows_connection(&self.layers[target], to.1) {
+            let problem = GroupProblem::NotConnectable { path: to.1.to_owned() };
+            return Err(param_error(&self.layers[target], to.1, problem));
+        }
         self.layers[target].bindings.push((to.1.to_owned(), Binding::Connection(source, from.1.to_owned())));
         Ok(())
+    }
+
+    /// Says which layers wait until somebody reads what they put out; by default all but the last.
+    pub fn lazy(mut self, lazy: Lazy) -> Self {
+        self.lower.lazy = lazy;
+        self
+    }
+
+    /// Lets `isconnected` count parameters that userdata may fill.
+    pub fn userdata_connects(mut self) -> Self {
+        self.lower.userdata_connects = true;
+        self
     }
 
     /// Keeps the output parameters of all layers as results.
@@ -150,7 +174,7 @@ impl GroupBuilder {
         if let Some(error) = self.error {
             return Err(error);
         }
-        let program = optimize(lower(&self.layers, self.lower), self.closures.table(), self.optimize);
+        let program = optimize(lower(&self.layers, &self.name, self.lower), self.closures.table(), self.optimize);
         let last = self.layers.last().map_or(String::new(), |layer| layer.name.clone());
         let names = self.layers.iter().map(|layer| (layer.shader.name.clone(), layer.name.clone())).collect();
         Group::new(program, self.closures, locator(self.sources, names)).map_err(|error| GroupError {

@@ -130,6 +130,11 @@ pub enum GroupProblem {
         /// What the output is.
         given: Type,
     },
+    /// G0305: a parameter that its shader lets nothing feed, by `[[int allowconnect = 0]]`.
+    NotConnectable {
+        /// The parameter as given.
+        path: String,
+    },
     /// G0401: the program of the group is more than the machine takes, or breaks another promise.
     CannotRun {
         /// Which.
@@ -150,6 +155,7 @@ impl GroupProblem {
             GroupProblem::TooMany { .. } => "G0302",
             GroupProblem::NotAnInt { .. } => "G0303",
             GroupProblem::CannotFeed { .. } => "G0304",
+            GroupProblem::NotConnectable { .. } => "G0305",
             GroupProblem::CannotRun { .. } => "G0401",
         }
     }
@@ -178,6 +184,9 @@ impl fmt::Display for GroupProblem {
             }
             GroupProblem::CannotFeed { path, wanted, given } => {
                 write!(f, "a {given} cannot feed the {wanted} `{path}`")
+            }
+            GroupProblem::NotConnectable { path } => {
+                write!(f, "`{path}` cannot be fed: its shader says so with `allowconnect`")
             }
             GroupProblem::CannotRun { error } => write!(f, "the shader cannot be run: {error}"),
         }

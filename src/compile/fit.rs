@@ -1,6 +1,7 @@
 //! What fits a parameter: the paths that name one, the values and the connections it takes.
 
 use super::error::{GroupError, GroupProblem, GroupSubject};
+use crate::check::typed::{ExprKind, Metadata};
 use crate::ir::lower::{Binding, Layer};
 use crate::lang::path::{part, root, steps};
 use crate::lang::types::{Base, Element, Length, Type};
@@ -22,6 +23,14 @@ pub(super) fn find_type(layer: &Layer, path: &str) -> Result<Type, GroupError> {
     }
     let wrong = |reason| param_error(layer, path, GroupProblem::NoPart { path: path.to_owned(), reason });
     steps.iter().try_fold(ty, |ty, step| part(&ty, step)).map_err(wrong)
+}
+
+/// Does the shader let a parameter be fed? Not with `[[int allowconnect = 0]]`.
+pub(super) fn allows_connection(layer: &Layer, path: &str) -> bool {
+    let variables = &layer.shader.variables;
+    let param = layer.shader.params.iter().find(|p| variables[p.var.0 as usize].name == root(path));
+    let refuses = |entry: &Metadata| entry.name == "allowconnect" && matches!(entry.value.kind, ExprKind::Int(0));
+    !param.is_some_and(|param| param.metadata.iter().any(refuses))
 }
 
 /// How long a parameter is that takes any number of elements: as a whole it has no bound, and its parts are counted by

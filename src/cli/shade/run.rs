@@ -11,6 +11,7 @@ use crate::cli::failure::Failure;
 use crate::cli::speak::{say, tell};
 use crate::cli::threads::capped;
 use crate::exec::{Group, Host, MAX_LANES, Machine, Points, Report, ReportKind, Values};
+use crate::ir::lower::Lazy;
 use crate::ops::format::{FormatArg, format};
 use crate::scene::{GroupCompiler, GroupSpec, ShaderFiles};
 use rayon::prelude::*;
@@ -60,7 +61,14 @@ fn announce(options: &Options, spec: &GroupSpec) {
 
 fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Result<Group, Failure> {
     let wrong = |error: crate::scene::SceneError| Failure::Wrong(error.to_string());
-    let mut builder = files.builder(spec).map_err(wrong)?.keep_outputs();
+    let mut builder = files.builder(spec).map_err(wrong)?.group_name(&spec.name);
+    builder = builder.lazy(lazy(options));
+    if !options.outputs.is_empty() {
+        builder = builder.keep_outputs();
+    }
+    if options.userdata_isconnected {
+        builder = builder.userdata_connects();
+    }
     if options.unoptimized {
         builder = builder.unoptimized();
     }
@@ -71,6 +79,20 @@ fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Re
         written.map_err(|error| Failure::Usage(format!("{}: error: {error}", path.display())))?;
     }
     Ok(group)
+}
+
+/// Which layers wait, by OSL's settings.
+fn lazy(options: &Options) -> Lazy {
+    let on = |name: &str| {
+        let last = options.settings.iter().rev().find(|(known, _)| known == name);
+        last.is_none_or(|(_, value)| value != "0")
+    };
+    Lazy {
+        layers: on("lazylayers"),
+        globals: on("lazyglobals"),
+        unconnected: on("lazyunconnected"),
+        traces: on("lazytrace"),
+    }
 }
 
 /// Puts the values of `--reparam` in place of those the group was built with.

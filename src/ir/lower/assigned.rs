@@ -18,6 +18,8 @@ pub(super) struct Effects {
     pub(super) exits: bool,
     /// True when it returns from the body it stands in.
     pub(super) returns: bool,
+    /// True when it traces rays.
+    pub(super) traces: bool,
     /// True when it is worth skipping in lanes that do not need it.
     pub(super) costly: bool,
 }
@@ -148,6 +150,7 @@ impl Assigned {
                 // What the function declares ends with it, so that chains of calls do not gather it.
                 out.vars.extend(callee.vars.difference(&callee.declared));
                 out.prints |= callee.prints;
+                out.traces |= callee.traces;
                 out.exits |= callee.exits;
             }
             Builtin(name, args) => {
@@ -160,6 +163,7 @@ impl Assigned {
                     out.vars.extend(moved.map(|(at, _)| VarId(at as u32)));
                 }
                 out.exits |= *name == "exit";
+                out.traces |= *name == "trace";
                 out.costly |= name.contains("noise") || matches!(*name, "pow" | "spline" | "format" | "transform");
                 self.args(shader, args, out);
             }

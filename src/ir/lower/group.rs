@@ -1,9 +1,8 @@
-//! A shader group: layers in order, their parameters bound, their connections joined.
+//! The parameters of a layer: bound, fed by other layers, or defaulted.
 
-use super::state::{Bound, Frame, Lower};
+use super::state::Lower;
 use super::value::{Value, kind_of, zero_of};
 use crate::check::typed::{ExprKind, Shader, ShaderParam, VarId};
-use crate::ir::build::Builder;
 use crate::ir::op::{AttributeOf, AttributeQuery, AttributeType, Routine};
 use crate::ir::program::*;
 use crate::lang::globals::Global;
@@ -38,78 +37,55 @@ pub struct Layer {
 }
 
 /// What to lower for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct LowerOptions {
     /// Fold constants and share equal values while building.
     pub simplify: bool,
     /// Keep the output parameters of every layer as results.
     pub outputs: bool,
+    /// Which layers wait until somebody reads what they put out.
+    pub lazy: Lazy,
+    /// Count parameters that userdata may fill as connected.
+    pub userdata_connects: bool,
 }
 
-/// Writes the layers of a group into one program. Bindings have been checked against the shaders' parameters.
-pub fn lower(layers: &[Layer], options: LowerOptions) -> Program {
-    let mut builder = Builder::new(options.simplify);
-    let mut ci = builder.constant(Const::NoClosure);
-    let mut finished: Vec<HashMap<String, (Value, Type)>> = Vec::new();
-    let mut outputs = Vec::new();
-    for (number, layer) in layers.iter().enumerate() {
-        let read = read_params(layers, number, options.outputs);
-        let mut lower = Lower::new(builder, &layer.shader, number as u32, read);
-        lower.at(layer.shader.span);
-        lower.layer(layer, &finished, ci);
-        ci = lower.final_ci();
-        let params = lower.final_params();
-        if options.outputs {
-            lower.list_outputs(layer, &params, &mut outputs);
-        }
-        finished.push(params);
-        builder = lower.b;
+/// Which layers wait until somebody reads what they put out; any other runs in its turn. OSL has options of these names, all on at
+/// first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lazy {
+    /// Any: without, all layers run in order.
+    pub layers: bool,
+    /// Those that assign globals.
+    pub globals: bool,
+    /// Those that feed nobody, which then never run.
+    pub unconnected: bool,
+    /// Those that trace rays.
+    pub traces: bool,
+}
+
+impl Default for Lazy {
+    fn default() -> Self {
+        Lazy { layers: true, globals: true, unconnected: true, traces: true }
     }
-    let mut program = builder.finish();
-    program.result = Some(ci);
-    program.outputs = outputs;
-    program
 }
 
 impl Lower<'_> {
-    fn layer(&mut self, layer: &Layer, finished: &[HashMap<String, (Value, Type)>], ci: Reg) {
-        let ci_var = self.global_var(Global::Ci);
-        self.vars[ci_var.0 as usize] = Some(Bound { value: Value::Regs(vec![ci]), level: 0 });
-        for param in &self.shader.params {
-            self.parameter(param, layer, finished);
-        }
-        let effects = self.assigned.of_stmts(self.shader, &self.shader.body);
-        if !effects.returns && !effects.exits {
-            self.frames.push(Frame { scope: None, result: None });
-            self.stmts(&self.shader.body);
-        } else {
-            let scope = self.b.scope();
-            self.exit = Some(scope);
-            self.frames.push(Frame { scope: Some(scope), result: None });
-            self.region(effects.vars, |l| {
-                l.b.open();
-                l.stmts(&l.shader.body);
-                let block = l.b.close();
-                l.b.push(Node::Scope(scope, block));
-            });
-        }
-    }
-
     pub(super) fn global_var(&self, global: Global) -> VarId {
         let at = self.shader.variables.iter().position(|variable| variable.global == Some(global));
         VarId(at.unwrap_or(0) as u32)
     }
 
-    fn parameter(&mut self, param: &ShaderParam, layer: &Layer, finished: &[HashMap<String, (Value, Type)>]) {
+    /// Gives a parameter its value: what feeds it has run.
+    pub(super) fn parameter(&mut self, param: &ShaderParam, layer: &Layer) {
         let var = param.var;
         let variable = &self.shader.variables[var.0 as usize];
         let (name, mut ty) = (variable.name.clone(), variable.ty.clone());
         let whole = layer.bindings.iter().rev().find(|(target, _)| *target == name);
         if let Some((_, binding)) = whole.filter(|_| param.open) {
-            ty.length = Length::Fixed(self.given_length(binding, &ty, finished).max(1));
+            ty.length = Length::Fixed(self.given_length(binding, &ty).max(1));
         }
         let value = match whole {
-            Some((_, binding)) => self.bound_value(binding, &ty, finished),
+            Some((_, binding)) => self.bound_value(binding, &ty),
             None => match &param.default {
                 Some(default) => {
                     let value = self.expr(default);
@@ -118,13 +94,14 @@ impl Lower<'_> {
                 None => self.zero(&ty),
             },
         };
-        if layer.bindings.iter().any(|(target, b)| root(target) == name && matches!(b, Binding::Connection(..))) {
+        let interpolated = self.interpolated(param, layer);
+        if interpolated && self.shared.options.userdata_connects {
             self.connected.push(var);
         }
-        let value = if self.interpolated(param, layer) { self.userdata(&name, value) } else { value };
+        let value = if interpolated { self.userdata(&name, value) } else { value };
         self.bind(var, value);
         for (target, binding) in layer.bindings.iter().filter(|(target, _)| *target != name && root(target) == name) {
-            self.bind_part(var, &ty, target, binding, finished);
+            self.bind_part(var, &ty, target, binding);
         }
     }
 
@@ -160,33 +137,26 @@ impl Lower<'_> {
     }
 
     /// How many elements a binding gives to a parameter that takes any number.
-    fn given_length(&mut self, binding: &Binding, ty: &Type, finished: &[HashMap<String, (Value, Type)>]) -> u32 {
+    fn given_length(&mut self, binding: &Binding, ty: &Type) -> u32 {
         let each = ty.element_type().base().map_or(1, Base::components).max(1);
         match binding {
             Binding::Numbers(numbers) => numbers.len().div_ceil(each) as u32,
             Binding::Strings(strings) => strings.len() as u32,
             Binding::Connection(layer, name) => {
-                let found = finished.get(*layer).and_then(|params| self.part_of(params, name));
+                let found = self.output_of(*layer, name);
                 found.map_or(1, |(value, _)| value.count() as u32)
             }
         }
     }
 
     /// Binds a part of a parameter, such as `.field` or `[2]`.
-    fn bind_part(
-        &mut self,
-        var: VarId,
-        ty: &Type,
-        path: &str,
-        binding: &Binding,
-        finished: &[HashMap<String, (Value, Type)>],
-    ) {
+    fn bind_part(&mut self, var: VarId, ty: &Type, path: &str, binding: &Binding) {
         let Some(mut whole) = self.vars[var.0 as usize].clone() else { return };
         // Paths have been checked, but for the bounds of an array whose length another binding has set since.
         let steps = steps(path).unwrap_or_default();
         let inside = steps.iter().try_fold(ty.clone(), |ty, step| part(&ty, step));
         let Ok(of) = inside else { return };
-        let new = self.bound_value(binding, &of, finished);
+        let new = self.bound_value(binding, &of);
         whole.value = self.with_part(&whole.value, ty, &steps, &new);
         self.vars[var.0 as usize] = Some(whole);
     }
@@ -240,11 +210,11 @@ impl Lower<'_> {
         }
     }
 
-    fn bound_value(&mut self, binding: &Binding, ty: &Type, finished: &[HashMap<String, (Value, Type)>]) -> Value {
+    fn bound_value(&mut self, binding: &Binding, ty: &Type) -> Value {
         match binding {
             Binding::Numbers(_) | Binding::Strings(_) => self.constants(binding, ty, &mut 0),
             Binding::Connection(layer, name) => {
-                let Some((value, from)) = finished.get(*layer).and_then(|params| self.part_of(params, name)) else {
+                let Some((value, from)) = self.output_of(*layer, name) else {
                     return self.zero(ty);
                 };
                 match (from.base(), ty.base()) {
@@ -267,6 +237,12 @@ impl Lower<'_> {
     fn average(&mut self, regs: &[Reg]) -> Reg {
         let third = self.b.float(1.0 / 3.0);
         self.dot(regs, &[third; 3])
+    }
+
+    /// An output of an earlier layer by its path.
+    fn output_of(&mut self, layer: usize, path: &str) -> Option<(Value, Type)> {
+        let params = self.shared.finished.get(layer)?.clone()?;
+        self.part_of(&params, path)
     }
 
     /// An output of an earlier layer, or a part of one.
@@ -321,16 +297,13 @@ impl Lower<'_> {
         }
     }
 
-    fn final_ci(&mut self) -> Reg {
-        let var = self.global_var(Global::Ci);
-        let value = self.variable(var);
-        let value = self.stable(&value);
-        self.regs(&value)[0]
-    }
-
-    fn final_params(&mut self) -> HashMap<String, (Value, Type)> {
+    pub(super) fn final_params(&mut self) -> HashMap<String, (Value, Type)> {
         let mut out = HashMap::new();
         for param in &self.shader.params {
+            // What has waited for its value to the end is read by nobody here; what it feeds others by is another layer's.
+            if self.waiting.contains(&param.var) && !self.read.contains(&param.var) {
+                continue;
+            }
             let variable = &self.shader.variables[param.var.0 as usize];
             let value = self.variable(param.var);
             let value = self.stable(&value);
@@ -343,7 +316,12 @@ impl Lower<'_> {
         out
     }
 
-    fn list_outputs(&mut self, layer: &Layer, params: &HashMap<String, (Value, Type)>, outputs: &mut Vec<Output>) {
+    pub(super) fn list_outputs(
+        &mut self,
+        layer: &Layer,
+        params: &HashMap<String, (Value, Type)>,
+        outputs: &mut Vec<Output>,
+    ) {
         for param in self.shader.params.iter().filter(|param| param.output) {
             let name = &self.shader.variables[param.var.0 as usize].name;
             if let Some((value, ty)) = params.get(name) {
@@ -360,19 +338,6 @@ fn declared_interpolated(param: &ShaderParam) -> bool {
         ("interpolated", ExprKind::Int(x)) => *x != 0,
         _ => false,
     })
-}
-
-/// The parameters of a layer that somebody reads: later layers, or the host when outputs are kept.
-fn read_params(layers: &[Layer], number: usize, kept: bool) -> Vec<VarId> {
-    let shader = &layers[number].shader;
-    let named = |param: &ShaderParam| &shader.variables[param.var.0 as usize].name;
-    let reads = |name: &str| {
-        let mut bindings = layers[number + 1..].iter().flat_map(|layer| &layer.bindings);
-        bindings.any(|(_, b)| matches!(b, Binding::Connection(from, path) if *from == number && root(path) == name))
-    };
-    let last = number + 1 == layers.len();
-    let seen = |param: &&ShaderParam| reads(named(param)) || (kept && last && param.output);
-    shader.params.iter().filter(seen).map(|param| param.var).collect()
 }
 
 fn list_value(layer: &str, name: String, value: &Value, ty: &Type, outputs: &mut Vec<Output>) {

@@ -11,6 +11,7 @@ mod builtin;
 mod call;
 mod expr;
 mod group;
+mod layers;
 mod moving;
 mod noise;
 mod operand;
@@ -25,5 +26,6 @@ mod texture;
 mod value;
 mod writing;
 
-pub use group::{Binding, Layer, LowerOptions, lower};
+pub use group::{Binding, Layer, Lazy, LowerOptions};
+pub use layers::lower;
 pub use state::SPANS_PER_LAYER;

@@ -115,6 +115,9 @@ impl Lower<'_> {
     /// The value that a name stands for at this moment.
     pub(super) fn named(&mut self, name: &Name) -> Value {
         if self.vars[name.var.0 as usize].is_none() {
+            self.pull(name.var);
+        }
+        if self.vars[name.var.0 as usize].is_none() {
             let variable = &self.shader.variables[name.var.0 as usize];
             let value = match variable.global {
                 Some(global) => self.global(global),

@@ -1,6 +1,7 @@
 //! The state of lowering one layer: what each variable stands for, and the regions in which lanes may part.
 
 use super::assigned::Assigned;
+use super::layers::Shared;
 use super::value::Value;
 use crate::check::typed::{Shader, VarId};
 use crate::ir::build::Builder;
@@ -59,6 +60,12 @@ pub(super) struct Lower<'a> {
     pub(super) read: Vec<VarId>,
     /// Which layer of the group this is.
     pub(super) layer: u32,
+    /// What the layers of the group share.
+    pub(super) shared: Shared<'a>,
+    /// Parameters that get their value when they are first read.
+    pub(super) waiting: Vec<VarId>,
+    pub(super) layer_name: String,
+    pub(super) group_name: String,
     pub(super) span: Span,
 }
 
@@ -79,6 +86,10 @@ impl<'a> Lower<'a> {
             stands_for: HashMap::new(),
             read,
             layer,
+            shared: Shared::default(),
+            waiting: Vec::new(),
+            layer_name: String::new(),
+            group_name: String::new(),
             span: Span::NONE,
         }
     }

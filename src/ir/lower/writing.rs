@@ -5,8 +5,9 @@ use super::place::Target;
 use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::{Argument, Expr};
-use crate::ir::op::{AttributeOf, AttributeQuery, Routine, Unary};
+use crate::ir::op::{AttributeOf, AttributeQuery, AttributeType, Routine, Unary};
 use crate::ir::program::Reg;
+use crate::lang::symbols::Symbol;
 use crate::lang::types::Type;
 
 impl Lower<'_> {
@@ -56,7 +57,27 @@ impl Lower<'_> {
             let object = self.symbol("");
             inputs.insert(0, object);
         }
+        if let Some(known) = self.own_name(inputs[1]).filter(|_| strings == 1) {
+            let old = self.load(out);
+            let old = self.flat_regs(&old);
+            if matches!(self.attribute_type(&old), AttributeType::Strings(1)) {
+                let name = self.symbol(&known);
+                self.write_flat(out, &[name]);
+                return self.b.int(1);
+            }
+        }
         self.attribute_of(AttributeOf::Attribute, out, inputs)
+    }
+
+    /// The name that a shader asks for of itself, its layer or its group.
+    fn own_name(&self, asked: Reg) -> Option<String> {
+        let asked = Symbol(self.b.known_int(asked)?);
+        Some(match asked.text() {
+            "shader:shadername" => self.shader.name.clone(),
+            "shader:layername" => self.layer_name.clone(),
+            "shader:groupname" => self.group_name.clone(),
+            _ => return None,
+        })
     }
 
     /// Asks the host for a value of the type of a place, and writes it there where it is found.
