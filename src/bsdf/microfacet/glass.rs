@@ -10,9 +10,9 @@
 //! Decision (2026-11-29): tables over width and cosine, one for each of some indices, made when a scene asks for their
 //! neighbourhood, because a scene has a few indices and one table takes some 100 ms; instead of one over all indices.
 //!
-//! Decision (2026-11-29): 257 indices, because what is left between two of them was the largest error by far: 6.6e-3 of 65 and 2.6e-3 of
-//! 129, inside just below 1, and 1.3e-3 now, at no cost to a scene of few indices; instead of a cubic, which needs four tables where
-//! two do. (An index that varies from 1.3 to 1.6 makes 16 tables a side.)
+//! Decision (2026-11-29): two of three indices are below 1 and dense as a cube toward it, because the error between two of 65 that lay
+//! alike on both sides was the largest by far, 6.6e-3 inside just below 1; instead of 257 of those, which are as good and cost
+//! a scene of few indices nothing, but one whose index varies, or a thorough test, four times as many tables.
 
 use super::albedo::{around, cosine_at, cosine_axis, cubic, width_at, width_axis};
 use super::distribution::{Distribution, Widths};
@@ -21,7 +21,7 @@ use super::ggx::{Ggx, sample_visible};
 use super::white::{WhiteRow, WhiteTable, weighted};
 use super::{Beckmann, Blinn};
 use crate::bsdf::fresnel::{dielectric, refracted};
-use crate::bsdf::power::log2;
+use crate::bsdf::power::{exp2, log2};
 use crate::math::elementary::exp;
 use glam::Vec3;
 use std::f32::consts::LN_2;
@@ -30,30 +30,40 @@ use std::sync::OnceLock;
 /// Widths, cosines and indices of the tables.
 const WIDTHS: usize = 14;
 const COSINES: usize = 36;
-const INDICES: usize = 257;
+const INDICES: usize = 121;
 /// The largest |ln eta|; beyond it the value there stands.
 const MOST: f32 = 2.0;
 /// The least width of the tables; what narrower facets lose is no part of theirs.
 const LEAST: f32 = 0.01;
 /// Facets that are averaged, and the step of their azimuths: consecutive numbers of Fibonacci, which fill the square evenly and along
-/// curved edges too. On one half of the facets, for the other mirrors it: at most 7e-4 off, mean 1.4e-4 (300 places against 2^18 facets),
-/// where as many of Roberts's sequence on both halves were 1.9e-3 and 4e-4 off.
+/// curved edges too. On one half of the facets, for the other mirrors it. So many are at most 7e-4 off, mean 1.4e-4 (300 places against 2^18
+/// facets), where 4096 of Roberts's sequence on both halves were 1.9e-3 and 4e-4 off.
 const FACETS: u32 = 4181;
 const STEP: u32 = 2584;
 
 /// One index of refraction.
 type Table = Vec<f32>;
 
-/// Place of an index on its axis, 0..1; densest around 1, where the sides differ most.
+/// The part of the axis below 1.
+const INSIDE: f32 = 2.0 / 3.0;
+
+/// Place of an index on its axis, 0..1; densest below 1 and close to it, where the critical angle moves fastest.
 fn index_axis(eta: f32) -> f32 {
-    let x = (log2(eta.max(1e-6)) * LN_2).clamp(-MOST, MOST);
-    0.5 + 0.5 * x.signum() * (x.abs() / MOST).sqrt()
+    let x = (log2(eta.max(1e-6)) * (LN_2 / MOST)).clamp(-1.0, 1.0);
+    if x < 0.0 { INSIDE * (1.0 - root(-x)) } else { INSIDE + (1.0 - INSIDE) * x.sqrt() }
+}
+
+/// The cube root of a number of 0..1.
+fn root(x: f32) -> f32 {
+    if x > 0.0 { exp2(log2(x) * (1.0 / 3.0)) } else { 0.0 }
 }
 
 fn index_at(place: f32) -> f32 {
-    let x = 2.0 * place - 1.0;
+    let inside = (1.0 - place / INSIDE).max(0.0);
+    let outside = (place - INSIDE).max(0.0) / (1.0 - INSIDE);
+    let x = outside * outside - inside * inside * inside;
     // At 1 a boundary is none; an index close to it stands for the limit.
-    if x == 0.0 { 1.0 + 1e-4 } else { exp(x.signum() * MOST * x * x) }
+    if x.abs() < 1e-6 { 1.0 + 1e-4 } else { exp(MOST * x) }
 }
 
 /// Place of a width on the axis of the tables, 0..1.
