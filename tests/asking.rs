@@ -120,15 +120,15 @@ fn messages_are_kept_by_point_and_type() {
         ),
         (
             r#"setmessage("m", 1); float x = 2; printf("%d %g", getmessage("m", x), x);"#,
-            "!the message \"m\" is read as float and was made as int in s.osl:1:87|0 2|0 2|0 2|",
+            "!the message \"m\" is read as float and was made as int in s.osl:1:70|0 2|0 2|0 2|",
         ),
         (
             r#"setmessage("m", 1); setmessage("m", 2); int x; getmessage("m", x); printf("%d", x);"#,
-            "!the message \"m\" is set already, in s.osl:1:87|1|1|1|",
+            "!the message \"m\" is set already, in s.osl:1:70|1|1|1|",
         ),
         (
             r#"int x = 3; getmessage("m", x); setmessage("m", 1); printf("%d %d", getmessage("m", x), x);"#,
-            "!the message \"m\" is set after it was asked for in s.osl:1:98|0 3|0 3|0 3|",
+            "!the message \"m\" is set after it was asked for in s.osl:1:81|0 3|0 3|0 3|",
         ),
         (r#"float d = 0; printf("%d %g", getmessage("trace", "hitdist", d), d);"#, "1 2.5|1 2.5|1 2.5|"),
     ] {
