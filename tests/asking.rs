@@ -195,6 +195,14 @@ fn userdata_goes_before_values_where_there_is_any() {
 }
 
 #[test]
+fn formats_may_be_computed() {
+    assert_eq!(body(r#"string f = u > .1 ? "%g" : "<%g>"; printf(f, u);"#, 2), "<0>|0.25|");
+    assert_eq!(body(r#"string f = concat("%", "s!"); printf("%s", format(f, "a"));"#, 1), "a!|");
+    let wrong = body(r#"string f = concat(which, " %d %d"); printf(f, 1);"#, 1);
+    assert!(wrong.starts_with("!the arguments do not fit this computed format|"), "{wrong}");
+}
+
+#[test]
 fn shaders_know_their_names() {
     let text = r#"string a, b, c; getattribute("shader:shadername", a); getattribute("shader:layername", b);
         getattribute("shader:groupname", c); printf("%s %s %s", a, b, c);"#;

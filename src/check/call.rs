@@ -163,9 +163,8 @@ impl Checker<'_> {
     ) -> Expr {
         if let (true, Some(ExprKind::String(kind))) =
             (matches!(name, "noise" | "pnoise"), values.first().map(|v| &v.kind))
-            && !self.noise_exists(name, kind, values[0].span)
         {
-            return Expr::error(span);
+            self.warn_of_noise(name, kind, values[0].span);
         }
         let mut arguments = Vec::new();
         let mut option = String::new();
@@ -218,20 +217,21 @@ impl Checker<'_> {
         name.clone()
     }
 
-    /// Reports a literal name that stands for no noise.
-    fn noise_exists(&mut self, function: &str, name: &str, span: Span) -> bool {
+    /// Warns of a literal name that stands for no noise, which is an error when it runs.
+    fn warn_of_noise(&mut self, function: &str, name: &str, span: Span) {
         const NAMES: &[&str] =
             &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash", "gabor"];
-        let unable = function == "pnoise" && name.contains("simplex");
-        if unable {
+        let known: Vec<&str> =
+            NAMES.iter().copied().filter(|n| function == "noise" || !n.contains("simplex")).collect();
+        if !known.contains(&name) {
             let diagnostic =
-                Diagnostic::error("E0412", span, format!("velour does not run {function}(\"{name}\") yet"));
-            self.report(diagnostic.help("\"perlin\" is the nearest to it"));
-        } else if !NAMES.contains(&name) {
-            let diagnostic = Diagnostic::error("E0414", span, format!("there is no noise \"{name}\""));
-            self.report(diagnostic.help(format!("the kinds of noise are {}", NAMES.join(", "))));
+                Diagnostic::warning("W0511", span, format!("`{function}` has no \"{name}\"; it gives 0 and an error"));
+            let help = match nearest(name, known.iter().copied()) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => format!("the kinds of noise are {}", known.join(", ")),
+            };
+            self.report(diagnostic.help(help));
         }
-        !unable && NAMES.contains(&name)
     }
 
     fn call_closure(&mut self, id: ClosureId, values: Vec<Expr>, span: Span) -> Expr {

@@ -16,11 +16,10 @@ impl Checker<'_> {
         };
         let Some(Argument::In(format)) = args.get(at) else { return };
         let ExprKind::String(text) = &format.kind else {
-            self.error(
-                "E0412",
-                format.span,
-                "velour does not run formats that are computed yet",
-                "write the format as a literal string",
+            let message =
+                format!("the format of this `{name}` is computed, so nothing tells whether its arguments fit");
+            self.report(
+                Diagnostic::warning("W0510", format.span, message).help("write the format as a literal string"),
             );
             return;
         };

@@ -21,8 +21,8 @@ struct Values<'r> {
 }
 
 impl Values<'_> {
-    /// Appends the text of a format with these arguments, which `wanted` puts in order.
-    fn write(&self, format: &Format, wanted: &TextFormat, out: &mut String) {
+    /// Appends the text of a format with these arguments, which `wanted` puts in order; false where they do not fit.
+    fn write(&self, format: &Format, wanted: &TextFormat, out: &mut String) -> bool {
         let (mut ints, mut floats, mut strings) = (&*self.ints, &*self.floats, &*self.strings);
         let mut closures = self.closures.iter();
         let args: SmallVec<[FormatArg; 4]> = wanted
@@ -35,10 +35,13 @@ impl Values<'_> {
                 TextArg::Closure => FormatArg::Closure(closures.next().map_or("", String::as_str)),
             })
             .collect();
-        // The checker has compared the format with its arguments, so what is left to fail cannot.
-        let _ = format.write(out, &args);
+        // The checker has compared a literal format with its arguments, so only a computed one can fail.
+        format.write(out, &args).is_ok()
     }
 }
+
+/// What is said of a computed format that its arguments do not fit.
+const MISFIT: &str = "the arguments do not fit this computed format";
 
 /// Takes the first `n` off.
 fn cut<'v, T>(values: &mut &'v [T], n: u32) -> &'v [T] {
@@ -48,9 +51,12 @@ fn cut<'v, T>(values: &mut &'v [T], n: u32) -> &'v [T] {
 }
 
 impl Run<'_> {
-    /// Appends the text of a format in one lane.
-    fn text_of(&self, format: &Format, wanted: &TextFormat, src: &[Reg], lane: usize, out: &mut String) {
+    /// Appends the text of a format in one lane; false for a computed one that its arguments do not fit.
+    fn text_of(&self, format: &Format, wanted: &TextFormat, src: &[Reg], lane: usize, out: &mut String) -> bool {
         let mut rest = src;
+        if wanted.computed {
+            cut(&mut rest, 1);
+        }
         let mut values = Values::default();
         let pick = |reg: &Reg| {
             let column = self.regs.i(*reg);
@@ -73,7 +79,12 @@ impl Run<'_> {
                 }
             }
         }
-        values.write(format, wanted, out);
+        if !wanted.computed {
+            return values.write(format, wanted, out);
+        }
+        let column = self.regs.i(src[0]);
+        let text = self.symbol_text(if column.len() == 1 { column[0] } else { column[lane] });
+        Format::read(text).is_ok_and(|format| values.write(&format, wanted, out))
     }
 
     fn symbol_text(&self, symbol: i32) -> &str {
@@ -89,7 +100,9 @@ impl Run<'_> {
                 continue;
             }
             let mut text = String::new();
-            self.text_of(&format, wanted, values, lane, &mut text);
+            if !self.text_of(&format, wanted, values, lane, &mut text) {
+                self.report_once(lane, span, Mistake::Other, MISFIT.to_owned());
+            }
             let (kind, text) = match to {
                 PrintTo::Output => (ReportKind::Output, text),
                 PrintTo::File => {
@@ -113,7 +126,9 @@ impl Run<'_> {
                 continue;
             }
             text.clear();
-            self.text_of(&format, wanted, src, lane, &mut text);
+            if !self.text_of(&format, wanted, src, lane, &mut text) {
+                self.report_once(lane, span, Mistake::Other, MISFIT.to_owned());
+            }
             let symbol = self.tree.strings.symbol(&text);
             self.regs.ints[dst.0 as usize][lane] = symbol.0;
         }

@@ -123,6 +123,8 @@ pub enum PrintTo {
 pub struct TextFormat {
     /// The format.
     pub text: String,
+    /// True where it is not `text` but the first source.
+    pub computed: bool,
     /// What each argument is made of.
     pub args: Vec<TextArg>,
 }
@@ -428,6 +430,7 @@ impl TextArg {
 impl TextFormat {
     /// The kinds of the registers that follow the format.
     fn takes(&self) -> impl Iterator<Item = (Kind, u32)> + '_ {
-        self.args.iter().map(|arg| arg.kind())
+        let format = self.computed.then_some((Kind::String, 1));
+        format.into_iter().chain(self.args.iter().map(|arg| arg.kind()))
     }
 }

@@ -257,5 +257,5 @@ fn format(choice: &mut Choice) -> TextFormat {
         .map(|_| [TextArg::Ints(1), TextArg::Floats(3), TextArg::Strings(1), TextArg::Floats(0)][choice.below(4)]);
     let args = args.collect();
     let text = ["%d %g %s", "%s", "", "%", "%*d", "%5.3f\n"][choice.below(6)].to_owned();
-    TextFormat { text, args }
+    TextFormat { computed: false, text, args }
 }

@@ -13,13 +13,16 @@ impl Lower<'_> {
         let exprs: Vec<&Expr> = args.iter().filter_map(Argument::read).collect();
         let (file, list) = exprs.split_at((name == "fprintf") as usize);
         let text = match list.first().map(|expr| &expr.kind) {
-            Some(ExprKind::String(text)) => text.clone(),
-            _ => String::new(),
+            Some(ExprKind::String(text)) => Some(text.clone()),
+            _ => None,
         };
         let values = self.operands(&exprs);
         let (file, values) = values.split_at(file.len());
         let mut src: Vec<Reg> = file.iter().flat_map(|value| self.regs(value)).collect();
-        let mut format = TextFormat { text, args: Vec::new() };
+        let mut format = TextFormat { computed: text.is_none(), text: text.unwrap_or_default(), args: Vec::new() };
+        if let (true, Some(computed)) = (format.computed, values.first()) {
+            src.extend(self.regs(computed));
+        }
         for value in values.iter().skip(1) {
             let before = src.len();
             self.flat(value, &mut src);
