@@ -203,6 +203,47 @@ fn formats_may_be_computed() {
 }
 
 #[test]
+fn a_closure_output_counts_where_nothing_is_said_of_ci() {
+    let text = |shader: &str| {
+        let compiler = Compiler::new();
+        let group = compiler.compile("s.osl", shader).unwrap().group().build().unwrap();
+        let mut machine = Machine::new();
+        let tree = machine.shade(&group, &line(1));
+        velour::closure::print::tree_text(group.table(), tree, 0)
+    };
+    let diffuse = "(0.5, 0.5, 0.5) * diffuse ((0, 0, 1))";
+    assert_eq!(text("shader s(output closure color BSDF = 0) { BSDF = .5 * diffuse(N); }"), diffuse);
+    assert_eq!(text("shader s(output closure color BSDF = 0) { BSDF = .5 * diffuse(N); Ci = 0; }"), "");
+    assert_eq!(text("shader s(output closure color A = 0, output closure color B = 0) { A = .5 * diffuse(N); }"), "");
+}
+
+#[test]
+fn odd_calls_of_the_library_mean_what_they_mean_in_osl() {
+    for (text, says) in [
+        (r#"printf("%g %g %g", distance({0,0,0}, {1,2,2}), length({1,2,2}), dot({1,2,3}, {1,1,1}));"#, "3 3 6|"),
+        (
+            r#"printf("%g", normalize({3,0,4})); color c = mix({0,0,0}, {1,1,1}, .5); printf("%g", c);"#,
+            "0.6 0 0.8|0.5 0.5 0.5|",
+        ),
+        (r#"printf("%d %d", regex_search("aa", "(a)\\1"), regex_search("foobar", "foo(?=bar)"));"#, "1 1|"),
+        (r#"string r[3]; printf("%d", split("", r, ","));"#, "0|"),
+        (
+            r#"printf("%v %n %p %c", P, N, P, color(1));"#,
+            "0.000000 0.000000 0.000000 0.000000 0.000000 1.000000 0.000000 0.000000 0.000000 1.000000 1.000000 1.000000|",
+        ),
+        ("if (u < 1) color k = 3; else k = 4; printf(\"%g\", k);", "3 3 3|"),
+        (
+            "void h(output vector x) { x *= 2; } h(vector(1) + 1); float f(float x) { x *= 2; return x; } float y = 3; printf(\"%g %g\", f(y), y);",
+            "6 3|",
+        ),
+    ] {
+        assert_eq!(body(text, 1), says, "{text}");
+    }
+    let wrong = body(r#"printf("%d", regex_search("aa", "(a"));"#, 1);
+    assert!(wrong.starts_with("!\"(a\" is no pattern: ") && wrong.ends_with("|0|"), "{wrong}");
+}
+
+#[test]
 fn shaders_know_their_names() {
     let text = r#"string a, b, c; getattribute("shader:shadername", a); getattribute("shader:layername", b);
         getattribute("shader:groupname", c); printf("%s %s %s", a, b, c);"#;

@@ -110,7 +110,9 @@ impl Checker<'_> {
         let chosen = best.iter().min_by_key(|b| rank(b.2)).map(|b| b.2.clone())?;
         let lists = args.0.iter().any(|arg| matches!(arg.kind, ast::ExprKind::InitList(_)));
         let tied = || best.iter().filter(|b| lists || matches!(b.2, Candidate::User(_)));
-        if tied().count() > 1 {
+        // Which of the builtins a list goes to is for the plainest of them to say, as in OSL.
+        let own = best.iter().any(|b| !matches!(b.2, Candidate::Builtin(..)));
+        if own && tied().count() > 1 {
             let undecided = best.iter().filter(|b| rank(b.2) == rank(&chosen)).count() > 1;
             let fatal =
                 undecided && (lists || self.returns_of(&chosen).structure().is_some()) || lists && expected.is_none();
@@ -182,6 +184,9 @@ impl Checker<'_> {
                 Some((_, true)) => {
                     let Some(place) = self.check_place(arg) else { return Expr::error(span) };
                     arguments.push(Argument::Out(place));
+                }
+                Some((Formal::Type(ty), false)) if matches!(arg.kind, ast::ExprKind::InitList(_)) => {
+                    arguments.push(Argument::In(self.check_initial(arg, &mut ty.clone())));
                 }
                 Some((Formal::Type(ty), false)) => arguments.push(Argument::In(self.convert(value, ty))),
                 _ => arguments.push(Argument::In(value)),

@@ -35,7 +35,7 @@ impl Run<'_> {
             Routine::Concat => self.string_lanes(dst, src, span, |a| string::concat(a.s(0), a.s(1))),
             Routine::Stof => self.float_lanes(dst, src, |a, out| out[0] = string::stof(a.s(0))),
             Routine::Stoi => self.int_lanes(dst, src, |a| string::stoi(a.s(0))),
-            Routine::Regex { whole, .. } => self.regex(*whole, dst, src),
+            Routine::Regex { whole, .. } => self.regex(*whole, dst, src, span),
             Routine::Split(parts) => self.split(*parts, dst, src, span),
             Routine::Format(format) => self.format(format, dst[0], src, span),
             Routine::Print(to, format) => self.print(*to, format, src, span),
@@ -119,7 +119,7 @@ impl Run<'_> {
         }
     }
 
-    fn regex(&mut self, whole: bool, dst: &[Reg], src: &[Reg]) {
+    fn regex(&mut self, whole: bool, dst: &[Reg], src: &[Reg], span: Span) {
         let search = if whole { pattern::regex_match } else { pattern::regex_search };
         let lanes = self.lanes_of(dst[0]);
         let mut positions = std::mem::take(&mut self.s.ints);
@@ -132,6 +132,11 @@ impl Run<'_> {
             let args = Lane { run: self, src, lane };
             positions.fill(0);
             let found = search(args.s(0), args.s(1), &mut positions);
+            let flaw =
+                if found == 0 { pattern::flaw(args.s(1)).map(|flaw| (args.s(1).to_owned(), flaw)) } else { None };
+            if let Some((pattern, flaw)) = flaw {
+                self.report_once(lane, span, Mistake::Other, format!("\"{pattern}\" is no pattern: {flaw}"));
+            }
             self.regs.ints[dst[0].0 as usize][lane] = found;
             for (reg, &position) in dst[1..].iter().zip(&positions) {
                 self.regs.ints[reg.0 as usize][lane] = position;

@@ -97,7 +97,7 @@ fn next_piece(format: &str) -> Result<(Piece<'_>, &str), FormatError> {
     // The length modifiers of C mean nothing here.
     rest = rest.trim_start_matches(['h', 'l']);
     match rest.chars().next() {
-        Some(letter) if "diouxXcfFeEgGs".contains(letter) => {
+        Some(letter) if "diouxXcfFeEgGspvnm".contains(letter) => {
             c.letter = letter;
             Ok((Piece::Conversion(c), &rest[1..]))
         }
@@ -335,7 +335,8 @@ pub fn check_format(format: &str, kinds: &[FormatKind], first: usize) -> Result<
         let kind = kinds.get(used).ok_or_else(|| format!("{MISMATCH} (not enough args)"))?;
         let (fits, needs) = match kind {
             FormatKind::Int => ("diouxX".contains(c.letter), "%d, %i, %o, %x, or %X"),
-            FormatKind::Float => ("fFeEgGc".contains(c.letter), "%f, %g, or %e"),
+            // OSL takes the first letters of its types too, and writes numbers.
+            FormatKind::Float => ("fFeEgGcpvnm".contains(c.letter), "%f, %g, or %e"),
             FormatKind::Str | FormatKind::Closure => (c.letter == 's', "%s"),
         };
         if !fits {

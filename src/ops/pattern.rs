@@ -1,9 +1,9 @@
 //! Regular expressions: `regex_search` and `regex_match`.
 //!
-//! Differs from OSL: patterns are those of the `regex` crate, which has no back-references and never takes exponential time; a
-//! pattern that it does not accept matches nothing.
+//! Patterns are those of the `fancy-regex` crate, which has back-references and looks ahead and behind; one that would take more than
+//! a million steps of going back matches nothing, and neither does one that is malformed, which [`flaw`] tells.
 
-use regex::{Captures, Regex};
+use fancy_regex::{Captures, Regex};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -27,13 +27,18 @@ pub fn regex_match(subject: &str, pattern: &str, positions: &mut [i32]) -> i32 {
     find(subject, &format!(r"\A(?:{pattern})\z"), pattern, positions)
 }
 
+/// What is wrong with a pattern, if anything.
+pub fn flaw(pattern: &str) -> Option<String> {
+    Regex::new(pattern).err().map(|error| error.to_string())
+}
+
 fn find(subject: &str, expression: &str, pattern: &str, positions: &mut [i32]) -> i32 {
     COMPILED.with_borrow_mut(|compiled| {
         if compiled.len() >= REMEMBERED && !compiled.contains_key(expression) {
             compiled.clear();
         }
         let regex = compiled.entry(expression.to_owned()).or_insert_with(|| Regex::new(expression).ok());
-        let captures = regex.as_ref().and_then(|regex| regex.captures(subject));
+        let captures = regex.as_ref().and_then(|regex| regex.captures(subject).ok().flatten());
         fill(positions, captures.as_ref(), pattern.len(), subject.len());
         captures.is_some() as i32
     })
@@ -69,6 +74,10 @@ mod tests {
         assert_eq!(regex_match("foobar.baz", "f.*z", &mut []), 1);
         assert_eq!(regex_match("ab", "a|ab", &mut []), 1);
         assert_eq!(regex_search("abc", "(", &mut []), 0);
+        assert!(flaw("(").is_some() && flaw("(a)").is_none());
+        assert_eq!(regex_search("aa", r"(a)\1", &mut []), 1);
+        assert_eq!(regex_search("foobar", "foo(?=bar)", &mut []), 1);
+        assert_eq!(regex_match("aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab", r"(?:(a*)*\1)*c", &mut []), 0);
     }
 
     #[test]

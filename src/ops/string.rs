@@ -79,7 +79,7 @@ pub fn stof(s: &str) -> f32 {
 /// An empty separator means runs of white space. A caller with an array of `n` strings passes at most `n`.
 pub fn split<'s>(s: &'s str, separator: &str, most: i32) -> Vec<&'s str> {
     let most = usize::try_from(most).unwrap_or(0);
-    if most == 0 {
+    if most == 0 || s.is_empty() {
         return Vec::new();
     }
     if !separator.is_empty() {
@@ -137,5 +137,6 @@ mod tests {
         assert_eq!(split("a,b,,c", ",", 2), ["a", "b,,c"]);
         assert_eq!(split("a", ",", 0), Vec::<&str>::new());
         assert_eq!(split("", "", 3), Vec::<&str>::new());
+        assert_eq!(split("", ",", 3), Vec::<&str>::new());
     }
 }

@@ -9,34 +9,18 @@
 //! of layers, with their powers. What is seen of it is the order of what layers print, and that they print.
 
 use super::assigned::Assigned;
-use super::group::{Binding, Layer, LowerOptions};
+use super::shared::Shared;
+use super::spec::{Binding, Layer, LowerOptions};
 use super::state::{Bound, Frame, Lower};
 use super::value::Value;
 use crate::check::typed::{Access, Argument, Expr, ExprKind, Place, Shader, ShaderParam, Stmt, VarId};
 use crate::ir::build::Builder;
-use crate::ir::program::{Const, Node, Output, Program};
+use crate::ir::program::{Const, Node, Program, Reg};
 use crate::lang::globals::Global;
 use crate::lang::path::root;
 use crate::lang::types::Type;
-use std::collections::HashMap;
 use std::rc::Rc;
 use velour_grammar::ast::BinaryOp;
-
-/// The parameters of a layer that has run.
-pub(super) type Params = HashMap<String, (Value, Type)>;
-
-/// What the layers of a group share while it is lowered.
-#[derive(Default)]
-pub(super) struct Shared<'a> {
-    layers: &'a [Layer],
-    group_name: String,
-    pub(super) options: LowerOptions,
-    /// The parameters of layers that have run.
-    pub(super) finished: Vec<Option<Rc<Params>>>,
-    /// The values of globals that a layer has assigned.
-    globals: Vec<(Global, Value)>,
-    outputs: Vec<Output>,
-}
 
 /// Writes the layers of a group into one program. Bindings have been checked against the shaders' parameters.
 pub fn lower(layers: &[Layer], group_name: &str, options: LowerOptions) -> Program {
@@ -58,12 +42,28 @@ pub fn lower(layers: &[Layer], group_name: &str, options: LowerOptions) -> Progr
     let ci = shared.globals.iter().find(|(global, _)| *global == Global::Ci);
     let result = match ci {
         Some((_, Value::Regs(regs))) => regs[0],
-        _ => none,
+        _ => shared.only_closure(last).unwrap_or(none),
     };
     let mut program = builder.finish();
     program.result = Some(result);
     program.outputs = shared.outputs;
     program
+}
+
+impl Shared<'_> {
+    /// The closure that a layer puts out, where it is one alone: what a shader means that says nothing of `Ci`, as those of Blender's nodes
+    /// do not.
+    fn only_closure(&self, number: usize) -> Option<Reg> {
+        let params = self.finished.get(number)?.as_ref()?;
+        let shader = &self.layers[number].shader;
+        let outputs = shader.params.iter().filter(|param| param.output);
+        let names = outputs.map(|param| &shader.variables[param.var.0 as usize].name);
+        let mut closures = names.filter_map(|name| params.get(name)).filter(|(_, ty)| *ty == Type::CLOSURE);
+        match (closures.next(), closures.next()) {
+            (Some((Value::Regs(regs), _)), None) => regs.first().copied(),
+            _ => None,
+        }
+    }
 }
 
 /// Does a layer run whether or not another one reads what it puts out?

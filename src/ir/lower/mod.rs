@@ -17,7 +17,9 @@ mod noise;
 mod operand;
 mod operator;
 mod place;
+mod shared;
 mod space;
+mod spec;
 mod state;
 mod statement;
 mod storage;
@@ -26,6 +28,6 @@ mod texture;
 mod value;
 mod writing;
 
-pub use group::{Binding, Layer, Lazy, LowerOptions};
 pub use layers::lower;
+pub use spec::{Binding, Layer, Lazy, LowerOptions};
 pub use state::SPANS_PER_LAYER;

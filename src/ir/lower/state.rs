@@ -1,7 +1,7 @@
 //! The state of lowering one layer: what each variable stands for, and the regions in which lanes may part.
 
 use super::assigned::Assigned;
-use super::layers::Shared;
+use super::shared::Shared;
 use super::value::Value;
 use crate::check::typed::{Shader, VarId};
 use crate::ir::build::Builder;
