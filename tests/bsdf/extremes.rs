@@ -88,7 +88,9 @@ impl Maker {
                 keywords.push((at as u32, self.value(keyword, nested)));
             }
         }
-        let id = id(&self.table, spec.name);
+        // Closures of one name differ in their parameters.
+        let mut named = self.table.named(spec.name);
+        let id = named.find(|(_, own)| own.params == spec.params).map(|(id, _)| id).expect("a closure of the table");
         self.tree.leaf(id, &params, &keywords)
     }
 

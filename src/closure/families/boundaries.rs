@@ -43,7 +43,7 @@ const ABSORPTION: ParamSpec =
     ParamSpec::about("absorption inside, per unit of length").left_out(0.0, "absorption inside the medium");
 const DISPERSION: ParamSpec = ParamSpec::about("inverse Abbe number").left_out(0.0, "the colors of dispersion");
 
-pub(super) const SHARED: &[Waiver] = &[
+const SHARED: &[Waiver] = &[
     Waiver {
         claim: Claim::Reciprocity,
         only: Some(("scattering", "multiple")),

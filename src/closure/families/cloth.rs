@@ -150,7 +150,7 @@ pub(super) fn sheen_alone() -> ClosureDef {
         }
     })
     .top_albedo(TopAlbedo::Sheen)
-    .without(SHEEN_BSDF_WAIVERS)
+    .without(&[Waiver { only: None, ..SOFTENED }])
 }
 
 /// What the keywords of a sheen choose.

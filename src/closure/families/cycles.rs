@@ -12,12 +12,25 @@ use crate::closure::definition::ClosureDef;
 use crate::closure::leaf::LeafMaker;
 use crate::closure::lobe_kind::LobeKind;
 use crate::closure::tree::{Floats, Ints};
-use crate::lang::closures::ParamSpec;
+use crate::lang::closures::{Claim, ParamSpec, Waiver};
 
 const WIDTH: ParamSpec = ParamSpec::about("width of the facets, 0..1; 0 is smooth").tried(&[0.3, 0.02, 0.6, 1.0]);
 const UNUSED: ParamSpec = ParamSpec::about("not used");
 const ETA: ParamSpec = ParamSpec::about("index of refraction beyond over before, > 0").tried(&[1.5, 1.05, 0.7]);
 const ALL: Floats = Floats::Uniform(0.0);
+
+const FACETS: &[Waiver] = &[
+    Waiver {
+        claim: Claim::Reciprocity,
+        only: None,
+        why: "where light passes, both halves are divided by what single scattering leaves toward the viewer alone",
+    },
+    Waiver {
+        claim: Claim::Energy,
+        only: None,
+        why: "what single scattering leaves is known to 5e-3, the worst of it for stretched facets",
+    },
+];
 
 /// All of them.
 pub(super) fn all() -> Vec<ClosureDef> {
@@ -66,7 +79,7 @@ fn f82_tint() -> ClosureDef {
         let fresnel = [r, g, b, one, one, one, Floats::Uniform(5.0)];
         Walls::facets(Term::Schlick, a.distribution, (a.N, a.T), [a.ax.0, a.ay.0], &fresnel).lobes(leaf);
     })
-    .without(super::boundaries::SHARED)
+    .without(FACETS)
 }
 
 arguments! {
@@ -92,7 +105,7 @@ fn multi_ggx_glass() -> ClosureDef {
         walls.refract = Ints::Uniform(2);
         walls.lobes(leaf);
     })
-    .without(super::boundaries::SHARED)
+    .without(FACETS)
 }
 
 arguments! {
@@ -111,7 +124,7 @@ fn multi_ggx_aniso() -> ClosureDef {
         Walls::facets(Term::Dielectric, Word::Same(Some(Some(Facets::Ggx))), (a.N, a.T), [a.ax.0, a.ay.0], &[ALL])
             .lobes(leaf);
     })
-    .without(super::boundaries::SHARED)
+    .without(FACETS)
 }
 
 arguments! {
@@ -127,7 +140,7 @@ fn plain_facets(name: &'static str, facets: Facets) -> ClosureDef {
         Walls::facets(Term::Dielectric, Word::Same(Some(Some(facets))), (a.N, Vector(a.N.0)), [a.ag.0; 2], &[ALL])
             .lobes(leaf);
     })
-    .without(super::boundaries::SHARED)
+    .without(FACETS)
 }
 
 arguments! {
@@ -147,7 +160,7 @@ fn facets_refraction(name: &'static str, facets: Facets) -> ClosureDef {
         walls.refract = Ints::Uniform(1);
         walls.lobes(leaf);
     })
-    .without(super::boundaries::SHARED)
+    .without(FACETS)
 }
 
 arguments! {
@@ -172,7 +185,7 @@ fn thin_glass() -> ClosureDef {
         (walls.refract, walls.tints) = (Ints::Uniform(2), [a.reflection, a.transmission]);
         walls.lobes(leaf);
     })
-    .without(super::boundaries::SHARED)
+    .without(FACETS)
 }
 
 arguments! {
@@ -228,7 +241,7 @@ fn hair_reflection() -> ClosureDef {
         let widths = [a.roughnessu.0, a.roughnessv.0];
         Walls::facets(Term::Dielectric, Word::Same(Some(Some(Facets::Ggx))), (a.N, a.T), widths, &[ALL]).lobes(leaf);
     })
-    .without(super::boundaries::SHARED)
+    .without(FACETS)
 }
 
 fn hair_transmission() -> ClosureDef {
