@@ -147,7 +147,7 @@ fn depend(args: &CheckArgs, compiler: &Compiler, name: &str, sources: &Sources) 
     if !(asked.only || asked.beside || asked.file.is_some()) {
         return Ok(());
     }
-    let own = |file: &&str| !compiler.options.own_files.iter().any(|(own, _)| own == file);
+    let own = |file: &&str| !file.starts_with('<') && !compiler.options.own_files.iter().any(|(own, _)| own == file);
     let files: Vec<&str> = sources.files().into_iter().filter(own).collect();
     let target = asked.target.clone().unwrap_or_else(|| Path::new(name).with_extension("oso").display().to_string());
     let rule = format!("{target}: {}\n", files.join(" \\\n  "));

@@ -1,7 +1,7 @@
 //! The commands, how their arguments are read, and what the process ends with.
 
 use super::failure::Failure;
-use super::speak::tell;
+use super::speak::{lost, tell};
 use super::{chart, check, info, new, render, shade, tree, verify};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
@@ -56,6 +56,7 @@ pub fn run() -> ExitCode {
         Command::Info(args) => info::run(&args),
     };
     match result {
+        Ok(()) if lost() => fail("error: standard output did not take all that was printed", 2),
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Wrong(message)) => fail(&message, 1),
         Err(Failure::Usage(message)) => fail(&message, 2),
@@ -70,8 +71,9 @@ fn gnu_style(words: Vec<OsString>) -> Vec<OsString> {
     let named = words.get(1).and_then(|word| word.to_str()).unwrap_or_default();
     let Some(chosen) = command.find_subcommand(named).filter(|_| named != "shade") else { return words };
     let longs: Vec<&str> = chosen.get_arguments().filter_map(|argument| argument.get_long()).collect();
+    let short = |word: &str| word.len() == 1 && chosen.get_arguments().any(|a| a.get_short() == word.chars().next());
     let fixed = |word: OsString| match word.to_str().and_then(|text| text.strip_prefix('-')) {
-        Some(bare) if bare.len() > 1 && longs.contains(&bare.split('=').next().unwrap_or(bare)) => {
+        Some(bare) if !short(bare) && longs.contains(&bare.split('=').next().unwrap_or(bare)) => {
             OsString::from(format!("--{bare}"))
         }
         _ => word,

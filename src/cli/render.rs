@@ -32,6 +32,9 @@ pub struct RenderArgs {
     /// Width and height in pixels [default: what the scene states, or 640 480]
     #[arg(short, long, num_args = 2, value_names = ["W", "H"])]
     res: Vec<u32>,
+    /// Print what shaders say at this pixel, layer by layer, and render nothing
+    #[arg(long, num_args = 2, value_names = ["X", "Y"])]
+    debug_pixel: Vec<u32>,
     /// N x N samples a pixel
     #[arg(long, value_name = "N", conflicts_with = "spp")]
     aa: Option<u32>,
@@ -162,9 +165,20 @@ impl Progress for Bar {
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let path = args.output.as_ref().or(args.image.as_ref());
-    let path =
-        path.ok_or_else(|| Failure::Usage("error: no image is named\n  help: add `-o picture.png`".to_owned()))?;
-    output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    let none = || Failure::Usage("error: no image is named\n  help: add `-o picture.png`".to_owned());
+    // To look at one pixel no image is needed.
+    let debug = <[u32; 2]>::try_from(&args.debug_pixel[..]).ok();
+    let path = match (path, debug) {
+        (None, Some(_)) => std::path::Path::new(""),
+        (path, _) => path.ok_or_else(none)?,
+    };
+    if debug.is_none() {
+        output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    }
+    if args.res.len() > 2 || args.debug_pixel.len() > 2 {
+        let text = "error: --res and --debug-pixel are given once\n  help: take one of them out";
+        return Err(Failure::Usage(text.to_owned()));
+    }
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     args.testrender.note();
     let compiler = ShaderFiles::new(args.compile.compiler()?).lenient(!args.strict);
@@ -187,6 +201,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         say(&Explanation::new(&scene, &settings).to_string());
     }
     let mut renderer = Renderer::new(&scene, &settings).map_err(Failure::of_render)?;
+    if !renderer.plan().gives_light() {
+        tell("warning: nothing in the scene gives light, so it is black\n");
+    }
+    if let Some(pixel) = debug {
+        return debug_pixel(&renderer, pixel);
+    }
     let bar = Bar::new();
     renderer.finish(&bar).map_err(Failure::of_render)?;
     bar.bar.finish_and_clear();
@@ -194,6 +214,23 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     pass_on(&image.about.reports);
     output::write(&image, path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
     tell(&last_line(&image, path, start.elapsed().as_secs_f64()));
+    Ok(())
+}
+
+/// Prints what shaders say at a pixel, with the name of the layer before the first word of each.
+fn debug_pixel(renderer: &Renderer, [x, y]: [u32; 2]) -> Result<(), Failure> {
+    let Settings { width, height, .. } = *renderer.settings();
+    if x >= width || y >= height {
+        return Err(Failure::Usage(format!("error: there is no pixel {x} {y} in a picture of {width} x {height}")));
+    }
+    let mut layer = None;
+    for report in renderer.pixel_reports(x, y) {
+        if layer.as_ref() != Some(&report.place.layer) {
+            tell(&format!("layer {} (shader {})\n", report.place.layer, report.place.shader));
+            layer = Some(report.place.layer.clone());
+        }
+        pass_on(&[report]);
+    }
     Ok(())
 }
 

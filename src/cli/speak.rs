@@ -1,10 +1,23 @@
 //! How text reaches people: the only place that prints.
 
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Prints to standard output. A pipe that closes early is no reason to complain.
+/// True once standard output did not take what was printed.
+static LOST: AtomicBool = AtomicBool::new(false);
+
+/// Prints to standard output. A pipe that closes early is no reason to complain; a full disk is, at the end.
 pub fn say(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    let mut out = std::io::stdout();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => LOST.store(true, Ordering::Relaxed),
+        _ => {}
+    }
+}
+
+/// Did standard output lose what was printed?
+pub fn lost() -> bool {
+    LOST.load(Ordering::Relaxed)
 }
 
 /// Prints to standard error.

@@ -43,6 +43,9 @@ pub struct TreeArgs {
 
 /// Shades one point and prints its tree.
 pub fn run(args: &TreeArgs) -> Result<(), Failure> {
+    if !args.view.is_finite() || args.uv.iter().any(|x| !x.is_finite()) {
+        return Err(Failure::Usage("error: --view and --uv take finite numbers".to_owned()));
+    }
     let shader = args.compile.compiler()?.compile_file(&args.file).map_err(|error| match error {
         crate::compile::CompileError::File { .. } => Failure::Usage(error.to_string()),
         other => Failure::Wrong(other.to_string()),

@@ -100,6 +100,8 @@ impl Run<'_> {
         let at = Layout::of(call);
         let alike = src[at.floats..].iter().all(|&reg| self.uniform(reg));
         let mut shared = None;
+        // Most batches look up one file: it is asked for once.
+        let (mut latest, mut tiled): (Option<(i32, Found)>, bool) = (None, false);
         for lane in 0..self.n {
             if self.s.mask[lane] == 0 {
                 continue;
@@ -115,9 +117,14 @@ impl Run<'_> {
             let (mut place, slopes) = if call.environment { around(&args) } else { flat(&args) };
             let symbol = args.i(0);
             let [s, t] = &mut place;
-            let found = self.texture_at(symbol, s, t);
-            let (value, dx, dy) = match &found {
-                Ok(texture) => sampled(texture, place, slopes, how, n),
+            let known = latest.as_ref().is_some_and(|(known, _)| *known == symbol && !tiled);
+            if !known {
+                tiled = is_tiled(self.tree.strings.text(Symbol(symbol)));
+                latest = Some((symbol, self.texture_at(symbol, s, t)));
+            }
+            let Some((_, found)) = &latest else { continue };
+            let (value, dx, dy) = match found {
+                Ok(texture) => sampled(texture, place, slopes, how, (n, call.slopes)),
                 Err(_) => {
                     let value = std::array::from_fn(|c| how.missing[if c == n { 3 } else { c.min(2) }].unwrap_or(0.0));
                     (value, [0.0; 4], [0.0; 4])
@@ -126,8 +133,10 @@ impl Run<'_> {
             self.put_sample(call, dst, lane, [value, dx, dy]);
             let (ok, message) = (dst[dst.len() - 2], dst[dst.len() - 1]);
             self.regs.ints[ok.0 as usize][lane] = i32::from(found.is_ok());
-            let text = found.err().unwrap_or_default();
-            self.regs.ints[message.0 as usize][lane] = self.tree.strings.symbol(&text).0;
+            let text = found.as_ref().err().cloned().unwrap_or_default();
+            // The empty text is symbol 0, which need not be looked for.
+            let word = if text.is_empty() { 0 } else { self.tree.strings.symbol(&text).0 };
+            self.regs.ints[message.0 as usize][lane] = word;
             if !text.is_empty() && !call.asks && how.missing.iter().all(Option::is_none) {
                 let reason = text.clone();
                 self.report_once(lane, span, Mistake::Texture { reason }, text);
@@ -232,9 +241,16 @@ fn sampled(
     place: [f32; 2],
     slopes: [f32; 4],
     how: &How,
-    n: usize,
+    (n, changes): (usize, bool),
 ) -> ([f32; 4], [f32; 4], [f32; 4]) {
-    let Sample { mut value, ds, dt } = texture.lookup(place[0], place[1], slopes, &how.lookup);
+    let sample = match changes {
+        true => texture.lookup(place[0], place[1], slopes, &how.lookup),
+        false => {
+            let value = texture.value(place[0], place[1], slopes, &how.lookup);
+            Sample { value, ..Sample::default() }
+        }
+    };
+    let Sample { mut value, ds, dt } = sample;
     let along = |x: f32, y: f32| -> [f32; 4] { std::array::from_fn(|c| ds[c] * x + dt[c] * y) };
     let (mut dx, mut dy) = (along(slopes[0], slopes[1]), along(slopes[2], slopes[3]));
     // A texture without the channel after those that are wanted covers everything.

@@ -51,6 +51,7 @@ mod camera;
 #[cfg(test)]
 mod counts;
 mod crossing;
+mod debug;
 mod emission;
 mod error;
 mod explain;

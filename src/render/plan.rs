@@ -101,6 +101,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Can anything in the scene give light?
+    pub fn gives_light(&self) -> bool {
+        self.materials.iter().any(|material| material.emits)
+    }
+
     /// Makes the plan of `scene`.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
         let mut materials: Vec<MaterialPlan> = scene

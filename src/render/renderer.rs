@@ -135,6 +135,10 @@ impl Renderer {
         &self.world.settings
     }
 
+    pub(super) fn world(&self) -> &World {
+        &self.world
+    }
+
     /// What the scene needs.
     pub fn plan(&self) -> &Plan {
         &self.world.plan

@@ -76,10 +76,16 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Adds a part of the difference of two samples; of equal ones nothing, to the last bit.
-    fn add(&mut self, part: f32, from: &Sample, to: &Sample) {
+    /// Adds a part of the difference of two samples; of equal ones nothing, to the last bit. `G` says whether slopes are wanted.
+    #[inline(always)]
+    fn add<const G: bool>(&mut self, part: f32, from: &Sample, to: &Sample) {
         for c in 0..4 {
             self.value[c] += part * (to.value[c] - from.value[c]);
+        }
+        if !G {
+            return;
+        }
+        for c in 0..4 {
             self.ds[c] += part * (to.ds[c] - from.ds[c]);
             self.dt[c] += part * (to.dt[c] - from.dt[c]);
         }
@@ -98,6 +104,16 @@ impl Texture {
     /// Looks up at (s, t), with t = 0 at the top; `slopes` are ds/dx, dt/dx, ds/dy, dt/dy of a pixel. Coordinates that are not finite give the
     /// fill.
     pub fn lookup(&self, s: f32, t: f32, slopes: [f32; 4], how: &Lookup) -> Sample {
+        self.look_up::<true>(s, t, slopes, how)
+    }
+
+    /// The same without the changes along s and t, which are then zero.
+    pub fn value(&self, s: f32, t: f32, slopes: [f32; 4], how: &Lookup) -> [f32; 4] {
+        self.look_up::<false>(s, t, slopes, how).value
+    }
+
+    #[inline(always)]
+    fn look_up<const G: bool>(&self, s: f32, t: f32, slopes: [f32; 4], how: &Lookup) -> Sample {
         let sound = |x: f32| if x.is_finite() { x } else { 0.0 };
         if !s.is_finite() || !t.is_finite() {
             return Sample { value: [how.fill; 4], ..Sample::default() };
@@ -108,7 +124,7 @@ impl Texture {
         let probes = (2.0 * long / short - 1.0).clamp(1.0, 2.0 * MOST_ASPECT) as u32;
         let (level, part) = self.level_of(short);
         if probes <= 1 || long <= 1.0 {
-            return self.at_level(s, t, (level, part), how);
+            return self.at_level::<G>(s, t, (level, part), how);
         }
         // The outermost probes end where the ellipse does.
         let reach = 1.0 - short / long;
@@ -119,12 +135,12 @@ impl Texture {
             exp(-2.0 * x * x)
         };
         let total: f32 = (0..probes).map(weight).sum();
-        let center = self.at_level(s, t, (level, part), how);
+        let center = self.at_level::<G>(s, t, (level, part), how);
         let mut out = center;
         for i in 0..probes {
             let x = place(i);
-            let probe = self.at_level(s + x * step[0], t + x * step[1], (level, part), how);
-            out.add(weight(i) / total, &center, &probe);
+            let probe = self.at_level::<G>(s + x * step[0], t + x * step[1], (level, part), how);
+            out.add::<G>(weight(i) / total, &center, &probe);
         }
         out
     }
@@ -168,25 +184,27 @@ impl Texture {
     }
 
     /// One probe between a level and the one before it.
-    fn at_level(&self, s: f32, t: f32, (level, part): (usize, f32), how: &Lookup) -> Sample {
+    #[inline(always)]
+    fn at_level<const G: bool>(&self, s: f32, t: f32, (level, part): (usize, f32), how: &Lookup) -> Sample {
         let join = |number: usize| {
             let cubic = match how.interpolation {
                 Interpolation::Cubic => true,
                 Interpolation::Smart => number == 0,
                 Interpolation::Closest | Interpolation::Linear => false,
             };
-            self.join(self.level(number), s, t, cubic, how)
+            self.join::<G>(self.level(number), s, t, cubic, how)
         };
         if part >= 1.0 || level == 0 {
             return join(level);
         }
         let (fine, coarse) = (join(level - 1), join(level));
         let mut out = fine;
-        out.add(part, &fine, &coarse);
+        out.add::<G>(part, &fine, &coarse);
         out
     }
 
-    fn join(&self, level: &Level, s: f32, t: f32, cubic: bool, how: &Lookup) -> Sample {
+    #[inline(always)]
+    fn join<const G: bool>(&self, level: &Level, s: f32, t: f32, cubic: bool, how: &Lookup) -> Sample {
         let own = self.wrap();
         let wrap = [0, 1].map(|axis| how.wrap[axis].unwrap_or(own[axis]));
         let (width, height) = (level.width() as f32, level.height() as f32);
@@ -209,22 +227,26 @@ impl Texture {
         let (left, top) = (x.floor(), y.floor());
         let (fx, fy) = (x - left, y - top);
         let corner = (left as i32, top as i32);
-        let mut out = if cubic { joined_cubic(read, corner, fx, fy) } else { joined_linear(read, corner, fx, fy) };
-        out.ds.iter_mut().for_each(|x| *x *= width);
-        out.dt.iter_mut().for_each(|x| *x *= height);
+        let mut out = if cubic { joined_cubic(read, corner, fx, fy) } else { joined_linear::<G>(read, corner, fx, fy) };
+        if G {
+            out.ds.iter_mut().for_each(|x| *x *= width);
+            out.dt.iter_mut().for_each(|x| *x *= height);
+        }
         out
     }
 }
 
 #[inline(always)]
-fn joined_linear(read: impl Fn(i32, i32) -> [f32; 4], (x, y): (i32, i32), fx: f32, fy: f32) -> Sample {
+fn joined_linear<const G: bool>(read: impl Fn(i32, i32) -> [f32; 4], (x, y): (i32, i32), fx: f32, fy: f32) -> Sample {
     let (a, b, c, d) = (read(x, y), read(x + 1, y), read(x, y + 1), read(x + 1, y + 1));
     let mut out = Sample::default();
     for i in 0..4 {
         let (top, bottom) = (a[i] + fx * (b[i] - a[i]), c[i] + fx * (d[i] - c[i]));
         out.value[i] = top + fy * (bottom - top);
-        out.ds[i] = (b[i] - a[i]) + fy * ((d[i] - c[i]) - (b[i] - a[i]));
-        out.dt[i] = bottom - top;
+        if G {
+            out.ds[i] = (b[i] - a[i]) + fy * ((d[i] - c[i]) - (b[i] - a[i]));
+            out.dt[i] = bottom - top;
+        }
     }
     out
 }
@@ -238,6 +260,8 @@ fn spline(f: f32) -> [[f32; 4]; 2] {
     [weights, slopes]
 }
 
+// Four by four texels are a call's worth.
+#[inline(never)]
 fn joined_cubic(read: impl Fn(i32, i32) -> [f32; 4], (x, y): (i32, i32), fx: f32, fy: f32) -> Sample {
     let ([wx, sx], [wy, sy]) = (spline(fx), spline(fy));
     // Sums of differences from one texel, so that a constant stays one to the last bit.

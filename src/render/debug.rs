@@ -1,0 +1,33 @@
+//! What shaders say at one pixel, in the order in which they say it.
+
+use super::accel::{NOTHING, Ray};
+use super::points::{fill, fill_sky};
+use super::renderer::Renderer;
+use super::segment::{Segment, ray_type};
+use crate::exec::{Machine, Points, Report};
+
+impl Renderer {
+    /// Runs the shaders of what the center of a pixel shows, once, and gives what they say, layer by layer; nothing where the pixel
+    /// shows nothing. No light is followed on from there.
+    pub fn pixel_reports(&self, x: u32, y: u32) -> Vec<Report> {
+        let world = self.world();
+        let direction = world.camera.direction(x as f32 + 0.5, y as f32 + 0.5);
+        let (eye, spread) = (world.camera.eye(), world.camera.spread(direction));
+        let mut hits = Vec::new();
+        world.accel.closest(&[Ray::new(eye, direction)], &mut hits);
+        let mut machine = Machine::with_host(world.host.clone());
+        let mut points = Points::new(1);
+        let Some(hit) = hits.first().copied().filter(|hit| hit.primitive != NOTHING) else {
+            if let Some(background) = world.scene.background {
+                fill_sky(&mut points, 0, direction, ray_type::CAMERA);
+                machine.shade(&world.scene.materials[background.material as usize].surface, &points);
+            }
+            return machine.take_reports();
+        };
+        let (group, plan) = world.material(world.material_of(hit.primitive));
+        let segment = Segment { origin: eye, direction, hit, width: 0.0, spread, ray_type: ray_type::CAMERA };
+        fill(&mut points, &world.scene.geometry, [&segment].into_iter(), &plan.needs);
+        machine.shade(group, &points);
+        machine.take_reports()
+    }
+}
