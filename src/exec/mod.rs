@@ -9,8 +9,8 @@
 //! a count with each instruction.
 //!
 //! Decision (2026-11-29): what OSL calls userdata, the values that a mesh carries to its points, is asked for as an attribute of the
-//! object being shaded, by `getattribute`, and by nothing else, because a parameter's value is known when a group is built, and
-//! folded into its program; instead of a second kind of question that parameters would ask at every point.
+//! object being shaded, by `getattribute` and by parameters that are not locked (`lockgeom = 0`), because both want the same value; a
+//! parameter that is locked, as all are by default, is known when a group is built, and folded into its program.
 //!
 //! Decision (2026-11-29): an attribute counts as different from lane to lane, whatever the host answers, because the batch of a
 //! material holds points of many objects and what an object carries differs from point to point, and no compiled program can know; the price

@@ -219,7 +219,7 @@ fn light_cost(settings: &Settings) -> f64 {
 /// Nanoseconds to shade one direction of the background, if there is one.
 fn background_cost(scene: &Scene, settings: &Settings) -> Option<f64> {
     let background = scene.background?;
-    let host = Arc::new(host(&scene.camera, settings, &scene.textures));
+    let host = Arc::new(host(&scene.camera, settings, &scene.textures, None));
     let mut shading = Shading::new(settings.closure, host);
     shading.resize(MAX_LANES);
     (0..MAX_LANES).for_each(|lane| fill_sky(&mut shading.points, lane, Vec3::Y, 0));

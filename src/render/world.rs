@@ -43,7 +43,8 @@ impl World {
     /// `accel` is over the scene's geometry. A `sky` that is given is taken as it is.
     pub fn new(accel: Arc<Accel>, scene: Scene, settings: Settings, sky: Option<Sky>) -> Self {
         let plan = Plan::new(&scene, &settings);
-        let host: Arc<dyn Host> = Arc::new(super::host::host(&scene.camera, &settings, &scene.textures));
+        let host: Arc<dyn Host> =
+            Arc::new(super::host::host(&scene.camera, &settings, &scene.textures, Some(accel.clone())));
         let mut shading = Shading::new(settings.closure, host.clone());
         let object_emission = radiance::constant_emission(&scene, &plan, &mut shading);
         let powers = radiance::light_powers(&scene, &plan, &mut shading, &object_emission);

@@ -1,6 +1,7 @@
 //! The renderer against answers known exactly, against itself, and against bad input.
 
 mod adaptive;
+mod asking;
 mod clear;
 mod cloth;
 mod determinism;
