@@ -1,7 +1,7 @@
 //! What a shader declares, in the manner of oslinfo: kind, name, parameters with types, defaults and metadata.
 
-use crate::check::typed::{Expr, ExprKind, Metadata, Shader, ShaderParam};
-use crate::lang::types::{Base, Type};
+use crate::check::typed::{Expr, ExprKind, Metadata, Shader, ShaderParam, Variable};
+use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{ShaderKind, UnaryOp};
 
 /// The declaration of a shader as text.
@@ -31,7 +31,12 @@ pub fn shader_lines(shader: &Shader) -> String {
         let variable = &shader.variables[param.var.0 as usize];
         let output = if param.output { "output " } else { "" };
         let default = param.default.as_ref().and_then(|value| known(&variable.ty, value));
-        out += &format!("{output}{} {} {}\n", variable.ty, variable.name, default.as_deref().unwrap_or("nodefault"));
+        out += &format!(
+            "{output}{} {} {}\n",
+            declared_type(variable, param),
+            variable.name,
+            default.as_deref().unwrap_or("nodefault")
+        );
     }
     out
 }
@@ -44,7 +49,7 @@ pub fn shader_json(shader: &Shader) -> String {
         format!(
             "\n  {{\"name\":{:?},\"type\":{:?},\"output\":{},\"default\":{},\"metadata\":{}}}",
             variable.name,
-            variable.ty.to_string(),
+            declared_type(variable, param).to_string(),
             param.output,
             param.default.as_ref().map_or("null".to_owned(), json_value),
             json_metadata(&param.metadata)
@@ -85,7 +90,7 @@ fn json_value(value: &Expr) -> String {
 fn param_text(shader: &Shader, param: &ShaderParam) -> String {
     let variable = &shader.variables[param.var.0 as usize];
     let output = if param.output { "output " } else { "" };
-    let mut out = format!("    \"{}\" \"{output}{}\"\n", variable.name, variable.ty);
+    let mut out = format!("    \"{}\" \"{output}{}\"\n", variable.name, declared_type(variable, param));
     match &variable.ty.structure() {
         Some(structure) => {
             let fields: Vec<String> = structure.fields.iter().map(|(name, ty)| format!("{ty} {name}")).collect();
@@ -95,6 +100,11 @@ fn param_text(shader: &Shader, param: &ShaderParam) -> String {
     }
     out.extend(param.metadata.iter().map(|entry| metadata_text("\t\t", entry)));
     out
+}
+
+/// The type as it was declared: an array of any length has none.
+fn declared_type(variable: &Variable, param: &ShaderParam) -> Type {
+    if param.open { variable.ty.array(Length::Unsized) } else { variable.ty.clone() }
 }
 
 fn metadata_text(indent: &str, entry: &Metadata) -> String {

@@ -180,6 +180,14 @@ impl ShaderFiles {
         Ok(builder)
     }
 
+    /// The shader of a layer of a group, for a host that wants to know what it declares.
+    ///
+    /// # Errors
+    /// It is not found, or wrong.
+    pub fn shader_of(&self, spec: &GroupSpec, layer: &Layer) -> Result<Shader, SceneError> {
+        self.shader(layer, &spec.search)
+    }
+
     /// The group of a builder.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 use super::options::{Options, Step, Value};
 use crate::cli::failure::Failure;
+use crate::cli::speak::say;
 use crate::compile::Compiler;
 use crate::scene::{
     Connection, GroupSpec, Hints, Layer, ParamType, ParamValue, Place, ShaderFiles, Usage, Values, parse_group,
@@ -11,9 +12,12 @@ use std::path::PathBuf;
 /// The group as written, and the compiler that knows its shaders.
 pub fn group(options: &Options, compiler: Compiler) -> Result<(GroupSpec, ShaderFiles), Failure> {
     let mut files = ShaderFiles::new(compiler).lenient(true);
+    // As OSL names groups without a name: one on the command line counts as begun before that of `--group`.
+    let grouped = options.steps.iter().any(|step| matches!(step, Step::Group(_)));
+    let default_name = format!("unnamed_group_{}", if grouped { 2 } else { 1 });
     let mut spec = GroupSpec {
         usage: Usage::Surface,
-        name: options.groupname.clone(),
+        name: if options.groupname.is_empty() { default_name } else { options.groupname.clone() },
         is_light: false,
         layers: Vec::new(),
         connections: Vec::new(),
@@ -36,14 +40,20 @@ pub fn group(options: &Options, compiler: Compiler) -> Result<(GroupSpec, Shader
                 continue;
             }
             Step::Group(text) => {
+                if options.verbose {
+                    say(&format!("Processing group specification:\n---\n{text}\n---\n"));
+                }
                 add_text(text, &mut spec)?;
                 continue;
             }
             Step::Expr(code) => {
                 let name = format!("expr_{expressions}");
                 expressions += 1;
-                files =
-                    files.with_shader(&expression(&name, code)).map_err(|error| Failure::Wrong(error.to_string()))?;
+                let text = expression(&name, code);
+                if options.verbose {
+                    say(&format!("Expression-based shader text is:\n---\n{text}---\n"));
+                }
+                files = files.with_shader(&text).map_err(|error| Failure::Wrong(error.to_string()))?;
                 name
             }
             Step::Shader(name) => name.clone(),
@@ -136,8 +146,8 @@ fn guessed(text: &str) -> ParamType {
 /// The shader around the statements of `--expr`.
 fn expression(name: &str, code: &str) -> String {
     format!(
-        "shader {name}(float s = u [[int interpolated = 1]], float t = v [[int interpolated = 1]],\n\
-         output color result = 0, output float alpha = 1)\n{{\n{code}\n;\n}}\n"
+        "shader {name} (\n    float s = u [[ int interpolated=1 ]],\n    float t = v [[ int interpolated=1 ]],\n    \
+         output color result = 0,\n    output float alpha = 1,\n  )\n{{\n    {code}\n    ;\n}}\n"
     )
 }
 

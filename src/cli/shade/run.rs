@@ -35,7 +35,8 @@ pub fn run(words: &[String]) -> Result<(), Failure> {
     let host: Arc<dyn Host> = Arc::new(PatchHost::new(&options)?);
     announce(&options, &spec);
     let mut compiled = compile_group(&options, &spec, &files)?;
-    let mut job = Job::new(&options, host, &compiled)?;
+    list_layers(&options, &spec, &files)?;
+    let mut job = Job::new(&options, host, &compiled, &spec.name)?;
     for round in 0..options.iters.max(1) {
         if round == 1 && !options.reparams.is_empty() {
             change(&options, &mut spec)?;
@@ -54,9 +55,27 @@ fn announce(options: &Options, spec: &GroupSpec) {
     if options.verbose || options.query {
         say(&format!("Shader group:\n---\n{}\n---\n\n", spec.text()));
     }
+}
+
+/// Lists the layers, with `--oslquery` also their parameters.
+fn list_layers(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Result<(), Failure> {
+    if options.verbose || options.query {
+        say(&format!("Shader group \"{}\" layers are:\n", spec.name));
+        for layer in &spec.layers {
+            say(&format!("    {}\n", layer.layer_name));
+            let shader = files.shader_of(spec, layer).map_err(|error| Failure::Wrong(error.to_string()))?;
+            for param in shader.typed.params.iter().filter(|_| options.query) {
+                let variable = &shader.typed.variables[param.var.0 as usize];
+                let output = if param.output { "output " } else { "" };
+                say(&format!("\t{output}{} {}\n", variable.ty, variable.name));
+            }
+        }
+        say("\n");
+    }
     if !options.outputs.is_empty() {
         say("\n");
     }
+    Ok(())
 }
 
 fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Result<Group, Failure> {
@@ -124,6 +143,8 @@ struct Job<'o> {
     /// Messages are told once; `None` where every one is wanted.
     told: Option<HashSet<String>>,
     pool: rayon::ThreadPool,
+    /// The group's name.
+    group: String,
     seconds: f64,
 }
 
@@ -134,7 +155,7 @@ struct Shaded {
 }
 
 impl<'o> Job<'o> {
-    fn new(options: &'o Options, host: Arc<dyn Host>, group: &Group) -> Result<Self, Failure> {
+    fn new(options: &'o Options, host: Arc<dyn Host>, group: &Group, group_name: &str) -> Result<Self, Failure> {
         let threads = capped(options.threads);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| Failure::Usage(format!("error: threads cannot be started: {error}")))?;
@@ -146,6 +167,7 @@ impl<'o> Job<'o> {
             outputs: Vec::new(),
             told: (!repeats).then(HashSet::new),
             pool,
+            group: group_name.to_owned(),
             seconds: 0.0,
         };
         job.find_outputs(group);
@@ -230,7 +252,7 @@ impl<'o> Job<'o> {
             ReportKind::Output => say(&report.text),
             ReportKind::File(name) => append(name, &report.text)?,
             ReportKind::Warning | ReportKind::Error | ReportKind::Mistake(_) => {
-                let line = line(&report);
+                let line = line(&report, &self.group);
                 if self.told.as_mut().is_none_or(|told| told.insert(line.clone())) {
                     say(&line);
                 }

@@ -3,22 +3,22 @@
 use crate::exec::{MessageFault, Mistake, Report, ReportKind, ReportPlace};
 
 /// A message as one line or more.
-pub fn line(report: &Report) -> String {
+pub fn line(report: &Report, group: &str) -> String {
     let shader = &report.place.shader;
     match &report.kind {
         ReportKind::Warning if !shader.is_empty() => format!("WARNING: Shader warning [{shader}]: {}\n", report.text),
         ReportKind::Warning => format!("WARNING: {}\n", report.text),
         ReportKind::Error => format!("ERROR: Shader error [{shader}]: {}\n", report.text),
-        ReportKind::Mistake(mistake) => format!("ERROR: {}\n", words(mistake, report)),
+        ReportKind::Mistake(mistake) => format!("ERROR: {}\n", words(mistake, report, group)),
         ReportKind::Output | ReportKind::File(_) | ReportKind::Fatal => format!("{report}\n"),
     }
 }
 
-fn words(mistake: &Mistake, report: &Report) -> String {
+fn words(mistake: &Mistake, report: &Report, group: &str) -> String {
     let place = &report.place;
     match mistake {
         Mistake::Index { index, len } => format!(
-            "Index [{index}] out of range {}[0..{}]: {}:{} (group unnamed_group_1, layer {} {}, shader {})",
+            "Index [{index}] out of range {}[0..{}]: {}:{} (group {group}, layer {} {}, shader {})",
             place.word,
             i64::from(*len) - 1,
             place.file,
