@@ -130,6 +130,10 @@ fn messages_are_kept_by_point_and_type() {
             r#"int x = 3; getmessage("m", x); setmessage("m", 1); printf("%d %d", getmessage("m", x), x);"#,
             "!the message \"m\" is set after it was asked for in s.osl:1:81|0 3|0 3|0 3|",
         ),
+        (
+            r#"for (int i = 0; i < 2000; i++) setmessage(format("m%d", i), i); printf("not reached");"#,
+            "!a batch has more than 1,024 messages of different names or types, or more than 65,536 numbers in them|",
+        ),
         (r#"float d = 0; printf("%d %g", getmessage("trace", "hitdist", d), d);"#, "1 2.5|1 2.5|1 2.5|"),
     ] {
         assert_eq!(body(text, 3), says, "{text}");
@@ -158,6 +162,14 @@ fn dictionaries_are_searched_by_path() {
     ] {
         assert_eq!(body(&format!("{xml} {text}"), 1), says, "{text}");
     }
+    let many =
+        body(r#"int k = 1; for (int i = 0; i < 20000; i++) k = dict_find("<a><b/></a>", "//b"); printf("%d", k);"#, 1);
+    assert_eq!(many, "!a point holds more than 10000 nodes of dictionaries|0|");
+    let many = body(
+        r#"int k = 1; for (int i = 0; i < 3000; i++) k = dict_find(format("<a%d/>", i), "*"); printf("%d", k);"#,
+        1,
+    );
+    assert_eq!(many, "!a batch reads more than 1024 dictionaries|-1|");
     let wrong = body(r#"printf("%d", dict_find("<a>", "//a"));"#, 1);
     assert!(wrong.starts_with("!this is no dictionary: ") && wrong.ends_with("|-1|"), "{wrong}");
 }

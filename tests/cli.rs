@@ -409,7 +409,7 @@ fn displacement_is_read_and_warned_of_once() {
 <ShaderGroup name="skin" type="displacement">shader lift l1;</ShaderGroup><Sphere center="0,0,-3" radius="1"/></World>"#;
     place.file("lift.xml", text);
     let (code, _, error) = place.say(&[&["render", "lift.xml", "-o", "s.png"], &SMALL[..]].concat());
-    assert_eq!((code, error.lines().count()), (0, 2), "{error}");
+    assert_eq!((code, error.lines().count()), (0, 3), "{error}");
     let expected = "lift.xml:2:1: warning: displacement group `skin` is not applied; its surface stays where it is\n";
     assert!(error.starts_with(expected), "{error}");
 }

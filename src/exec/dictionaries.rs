@@ -1,12 +1,13 @@
 //! Dictionaries that shaders search, and the nodes that each lane has found.
 
-use super::found::Found;
+use super::found::{Found, MOST_DICTIONARIES, MOST_FOUND};
 use super::lane::Lane;
 use super::report::Mistake;
 use super::run::Run;
 use crate::ir::op::AttributeType;
 use crate::ir::program::Reg;
 use crate::ops::dictionary::Dictionary;
+use std::sync::Arc;
 use velour_grammar::Span;
 
 impl Run<'_> {
@@ -14,6 +15,11 @@ impl Run<'_> {
     fn dictionary(&mut self, text: &str, lane: usize, span: Span) -> Option<usize> {
         if let Some(&known) = self.s.dictionaries.numbers.get(text) {
             return known;
+        }
+        if self.s.dictionaries.numbers.len() >= MOST_DICTIONARIES {
+            let message = format!("a batch reads more than {MOST_DICTIONARIES} dictionaries");
+            self.report_once(lane, span, Mistake::Other, message);
+            return None;
         }
         let read = if text.trim_start().starts_with('<') { None } else { self.host.read_text(text) };
         let found = match Dictionary::parse(read.as_deref().unwrap_or(text)) {
@@ -30,17 +36,21 @@ impl Run<'_> {
         found
     }
 
-    /// Keeps the first of what was found, and gives its number; 0 for nothing.
-    fn keep(&mut self, lane: usize, dictionary: usize, mut nodes: Vec<usize>) -> i32 {
-        if nodes.is_empty() {
+    /// Keeps one of what was found, and gives its number; 0 where there is none, or where the lane holds too many.
+    fn keep(&mut self, lane: usize, dictionary: usize, nodes: Arc<[usize]>, at: usize, span: Span) -> i32 {
+        if at >= nodes.len() {
             return 0;
         }
-        let node = nodes.remove(0);
         let lists = &mut self.s.dictionaries.found;
         if lists.len() < self.n {
             lists.resize_with(self.n, Vec::new);
         }
-        lists[lane].push(Found { dictionary, node, rest: nodes });
+        if lists[lane].len() >= MOST_FOUND {
+            let message = format!("a point holds more than {MOST_FOUND} nodes of dictionaries");
+            self.report_once(lane, span, Mistake::Other, message);
+            return 0;
+        }
+        lists[lane].push(Found { dictionary, nodes, at });
         lists[lane].len() as i32
     }
 
@@ -60,7 +70,7 @@ impl Run<'_> {
             let number = match self.dictionary(&text, lane, span) {
                 Some(dictionary) => {
                     let nodes = self.s.dictionaries.parsed[dictionary].find(0, &path);
-                    self.keep(lane, dictionary, nodes)
+                    self.keep(lane, dictionary, nodes.into(), 0, span)
                 }
                 None => -1,
             };
@@ -69,31 +79,31 @@ impl Run<'_> {
     }
 
     /// `dict_find` below a node that was found.
-    pub(super) fn dict_find_below(&mut self, dst: Reg, src: &[Reg]) {
+    pub(super) fn dict_find_below(&mut self, dst: Reg, src: &[Reg], span: Span) {
         for lane in 0..self.n {
             if self.s.mask[lane] == 0 {
                 continue;
             }
             let args = Lane { run: self, src, lane };
-            let below = self.found(lane, args.i(0)).map(|found| (found.dictionary, found.node));
+            let below = self.found(lane, args.i(0)).map(|found| (found.dictionary, found.nodes[found.at]));
             let path = args.s(1).to_owned();
             let number = below.map_or(0, |(dictionary, node)| {
                 let nodes = self.s.dictionaries.parsed[dictionary].find(node, &path);
-                self.keep(lane, dictionary, nodes)
+                self.keep(lane, dictionary, nodes.into(), 0, span)
             });
             self.regs.ints[dst.0 as usize][lane] = number;
         }
     }
 
     /// `dict_next`: the next node of the same search.
-    pub(super) fn dict_next(&mut self, dst: Reg, src: &[Reg]) {
+    pub(super) fn dict_next(&mut self, dst: Reg, src: &[Reg], span: Span) {
         for lane in 0..self.n {
             if self.s.mask[lane] == 0 {
                 continue;
             }
             let args = Lane { run: self, src, lane };
-            let next = self.found(lane, args.i(0)).map(|found| (found.dictionary, found.rest.clone()));
-            let number = next.map_or(0, |(dictionary, rest)| self.keep(lane, dictionary, rest));
+            let next = self.found(lane, args.i(0)).map(|found| (found.dictionary, found.nodes.clone(), found.at + 1));
+            let number = next.map_or(0, |(dictionary, nodes, at)| self.keep(lane, dictionary, nodes, at, span));
             self.regs.ints[dst.0 as usize][lane] = number;
         }
     }
@@ -106,7 +116,7 @@ impl Run<'_> {
             }
             let args = Lane { run: self, src, lane };
             let found = self.found(lane, args.i(0));
-            let text = found.and_then(|f| self.s.dictionaries.parsed[f.dictionary].value(f.node, args.s(1)));
+            let text = found.and_then(|f| self.s.dictionaries.parsed[f.dictionary].value(f.nodes[f.at], args.s(1)));
             let text = text.map(str::to_owned);
             let there = text.is_some_and(|text| self.put_value(ty, &dst[1..], lane, &text));
             self.regs.ints[dst[0].0 as usize][lane] = i32::from(there);

@@ -2,6 +2,7 @@
 
 use crate::ops::dictionary::Dictionary;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Dictionaries that a machine remembers, so that shaders which make up new ones do not fill the memory.
 const REMEMBERED: usize = 64;
@@ -17,12 +18,21 @@ pub(super) struct Dictionaries {
     pub found: Vec<Vec<Found>>,
 }
 
+/// What a search has found, at one of its nodes.
 #[derive(Debug)]
 pub(super) struct Found {
     pub dictionary: usize,
-    pub node: usize,
-    pub rest: Vec<usize>,
+    /// All that it has found, which the entries of one search share.
+    pub nodes: Arc<[usize]>,
+    /// Which of them this is.
+    pub at: usize,
 }
+
+/// The most dictionaries that one batch may read.
+pub(super) const MOST_DICTIONARIES: usize = 1024;
+
+/// The most nodes that a shader may hold in a lane.
+pub(super) const MOST_FOUND: usize = 10_000;
 
 impl Dictionaries {
     /// Forgets what the batch before has found.

@@ -6,7 +6,7 @@
 use super::lane::Lane;
 use super::report::{MessageFault, Mistake};
 use super::run::Run;
-use super::slots::{MOST, Slot, State};
+use super::slots::{MOST, MOST_NUMBERS, Slot, State};
 use crate::ir::op::MessageShape;
 use crate::ir::program::{Kind, Reg};
 use crate::lang::symbols::Symbol;
@@ -21,7 +21,9 @@ impl Run<'_> {
     /// The place for messages of a name and type, a new one where there is none.
     fn slot_for(&mut self, name: i32, shape: &MessageShape) -> Option<usize> {
         let known = self.s.messages.iter().position(|slot| slot.name == name && slot.shape.as_ref() == Some(shape));
-        if known.is_none() && self.s.messages.len() < MOST {
+        let numbers = |slot: &Slot| slot.shape.as_ref().map_or(0, |shape| shape.count);
+        let held: u32 = self.s.messages.iter().map(numbers).fold(shape.count, u32::saturating_add);
+        if known.is_none() && self.s.messages.len() < MOST && held <= MOST_NUMBERS {
             self.s.messages.push(Slot::new(name, shape, self.n));
             return Some(self.s.messages.len() - 1);
         }
@@ -49,7 +51,7 @@ impl Run<'_> {
                 continue;
             }
             let Some(at) = self.slot_for(name, shape) else {
-                return self.fatal(span, "a batch has more than 1,024 messages of different names or types");
+                return self.fatal(span, "a batch has more than 1,024 messages of different names or types, or more than 65,536 numbers in them");
             };
             for (number, &reg) in src[1..].iter().enumerate() {
                 let (slot, regs) = (&mut self.s.messages[at], &*self.regs);

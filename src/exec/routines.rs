@@ -48,8 +48,8 @@ impl Run<'_> {
             Routine::Random(_) => self.random(dst),
             Routine::Trace => self.trace(dst[0], src),
             Routine::DictFind => self.dict_find(dst[0], src, span),
-            Routine::DictFindBelow => self.dict_find_below(dst[0], src),
-            Routine::DictNext => self.dict_next(dst[0], src),
+            Routine::DictFindBelow => self.dict_find_below(dst[0], src, span),
+            Routine::DictNext => self.dict_next(dst[0], src, span),
             Routine::DictValue(ty) => self.dict_value(*ty, dst, src, span),
         }
     }

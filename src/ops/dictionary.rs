@@ -13,6 +13,8 @@ struct Node {
     text: String,
     parent: usize,
     children: Vec<usize>,
+    /// The number after the last of what is inside: nodes are numbered in the order of the text.
+    end: usize,
 }
 
 /// A parsed dictionary. Node 0 stands above the root.
@@ -35,7 +37,18 @@ impl Dictionary {
             let inside = element.children().filter(roxmltree::Node::is_text).filter_map(|text| text.text());
             let name = element.tag_name().name().to_owned();
             nodes[parent].children.push(number);
-            nodes.push(Node { name, attributes, text: inside.collect(), parent, children: Vec::new() });
+            nodes.push(Node {
+                name,
+                attributes,
+                text: inside.collect(),
+                parent,
+                children: Vec::new(),
+                end: number + 1,
+            });
+        }
+        for number in (1..nodes.len()).rev() {
+            let (parent, end) = (nodes[number].parent, nodes[number].end);
+            nodes[parent].end = nodes[parent].end.max(end);
         }
         Ok(Dictionary { nodes })
     }
@@ -61,14 +74,16 @@ impl Dictionary {
     fn step(&self, from: &[usize], step: &str, deep: bool) -> Vec<usize> {
         let (test, conditions) = step.split_at(step.find('[').unwrap_or(step.len()));
         let mut out = Vec::new();
-        for &node in from {
-            let mut near = match test {
-                _ if deep => self.below(node),
-                "." => vec![node],
-                ".." => vec![self.nodes[node].parent],
-                _ if test.starts_with('@') => vec![node],
-                _ => self.nodes[node].children.clone(),
-            };
+        // What lies below several nodes is looked at once.
+        let inside = if deep { vec![self.below(from)] } else { Vec::new() };
+        let starts = from.iter().map(|&node| match test {
+            "." => vec![node],
+            ".." => vec![self.nodes[node].parent],
+            _ if test.starts_with('@') => vec![node],
+            _ => self.nodes[node].children.clone(),
+        });
+        let lists: Vec<Vec<usize>> = if deep { inside } else { starts.collect() };
+        for mut near in lists {
             near.retain(|&at| self.passes(at, test));
             for condition in conditions.split('[').skip(1) {
                 let condition = condition.trim_end_matches(']').trim();
@@ -84,15 +99,13 @@ impl Dictionary {
         out
     }
 
-    /// All nodes below one.
-    fn below(&self, node: usize) -> Vec<usize> {
-        let mut out = self.nodes[node].children.clone();
-        let mut at = 0;
-        while at < out.len() {
-            out.extend(&self.nodes[out[at]].children);
-            at += 1;
+    /// All nodes below some, which are in the order of the text.
+    fn below(&self, from: &[usize]) -> Vec<usize> {
+        let mut out: Vec<usize> = Vec::new();
+        for &node in from {
+            let first = out.last().map_or(0, |last| last + 1).max(node + 1);
+            out.extend(first..self.nodes[node].end.max(first));
         }
-        out.sort_unstable();
         out
     }
 

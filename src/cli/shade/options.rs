@@ -231,6 +231,9 @@ pub fn parse(args: &[String]) -> Result<Options, Failure> {
         }
         apply(names[0], modifiers, &given, &mut options)?;
     }
+    if u64::from(options.res[0]) * u64::from(options.res[1]) > 1 << 26 {
+        return Err(usage(format!("a grid of {} x {} points is too large", options.res[0], options.res[1])));
+    }
     Ok(options)
 }
 
