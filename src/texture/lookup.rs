@@ -8,7 +8,7 @@
 use super::pyramid::Texture;
 use super::texels::Level;
 use super::wrap::Wrap;
-use crate::math::elementary::exp;
+use crate::math::elementary::{exp, floor};
 
 /// How much longer than wide an ellipse may be; a longer one is made wider.
 const MOST_ASPECT: f32 = 32.0;
@@ -224,7 +224,7 @@ impl Texture {
             return Sample { value: read(x.floor() as i32, y.floor() as i32), ..Sample::default() };
         }
         let (x, y) = (x - 0.5, y - 0.5);
-        let (left, top) = (x.floor(), y.floor());
+        let (left, top) = (floor(x), floor(y));
         let (fx, fy) = (x - left, y - top);
         let corner = (left as i32, top as i32);
         let mut out = if cubic { joined_cubic(read, corner, fx, fy) } else { joined_linear::<G>(read, corner, fx, fy) };

@@ -98,13 +98,9 @@ impl Level {
     pub fn read(&self, x: usize, y: usize, first: usize, out: &mut [f32; 4]) {
         let (from, count) = (self.place(x, y) + first, self.channels.saturating_sub(first).min(4));
         match &self.texels {
-            Texels::Bytes(all) => {
-                out.iter_mut().zip(&all[from..from + count]).for_each(|(out, &x)| *out = BYTES[usize::from(x)]);
-            }
-            Texels::Words(all) => {
-                out.iter_mut().zip(&all[from..from + count]).for_each(|(out, &x)| *out = f32::from(x) / 65535.0);
-            }
-            Texels::Floats(all) => out.iter_mut().zip(&all[from..from + count]).for_each(|(out, &x)| *out = x),
+            Texels::Bytes(all) => take(all, from, count, |x| BYTES[usize::from(x)], out),
+            Texels::Words(all) => take(all, from, count, |x| f32::from(x) / 65535.0, out),
+            Texels::Floats(all) => take(all, from, count, |x| x, out),
         }
     }
 
@@ -144,6 +140,16 @@ impl Level {
             Texels::Floats(_) => Texels::Floats(sums),
         };
         Level::of_rows(width, height, n, &rows)
+    }
+}
+
+/// Takes so many numbers, in one step where there are four, as a loop of unknown length costs more than it reads.
+#[inline(always)]
+fn take<T: Copy>(all: &[T], from: usize, count: usize, number: impl Fn(T) -> f32, out: &mut [f32; 4]) {
+    match (all.get(from..).and_then(<[T]>::first_chunk::<4>), count) {
+        (Some(four), 4) => *out = four.map(number),
+        (Some(four), 3) => (out[0], out[1], out[2]) = (number(four[0]), number(four[1]), number(four[2])),
+        (_, count) => out.iter_mut().zip(&all[from..from + count]).for_each(|(out, &x)| *out = number(x)),
     }
 }
 
