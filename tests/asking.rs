@@ -323,6 +323,15 @@ fn globals_are_shared_by_the_layers_that_run() {
     assert_eq!(layers(&[("a", giver), ("b", reader)], &[], globals, 1), "0 1 0|0 1 0 1 1 1|");
 }
 
+/// Where a fed parameter is read is looked for as deep as expressions go, on the stack of a thread.
+#[test]
+fn what_feeds_a_long_expression_is_found() {
+    let sum = " + in".repeat(20_000);
+    let reader = format!("surface b(float in = 0) {{ float x = 0{sum}; printf(\"%g\", x); }}");
+    let said = layers(&[("a", GIVER), ("b", &reader)], &[("a.out", "b.in")], Lazy::default(), 1);
+    assert_eq!(said, "a|140000|");
+}
+
 #[test]
 fn a_parameter_may_refuse_to_be_fed() {
     let compiler = Compiler::new();

@@ -1,6 +1,6 @@
 //! The words and whole numbers that a shader compares something with: what its modes are chosen by.
 
-use super::typed::{Access, Argument, Expr, ExprKind, Place, Shader, Stmt};
+use super::typed::{Expr, ExprKind, Shader, Stmt};
 use velour_grammar::ast::BinaryOp;
 
 /// What a shader compares with, each once, in the order of its text.
@@ -42,59 +42,13 @@ impl Compared {
     }
 
     fn expr(&mut self, expr: &Expr) {
-        match &expr.kind {
-            ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::String(_) | ExprKind::Var(_) => {}
-            ExprKind::Step { place, .. } => self.place(place),
-            ExprKind::Convert(a) | ExprKind::Unary(_, a) | ExprKind::Field(a, _) => self.expr(a),
-            ExprKind::Assign(place, a) | ExprKind::Update(_, place, a) => {
-                self.place(place);
-                self.expr(a);
-            }
-            ExprKind::Binary(op, a, b) => {
-                let compares = matches!(
-                    op,
-                    BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge
-                );
-                if compares {
-                    self.literal(a);
-                    self.literal(b);
-                }
-                self.expr(a);
-                self.expr(b);
-            }
-            ExprKind::Index(a, b) | ExprKind::SpaceToSpace(a, b) => [a, b].into_iter().for_each(|e| self.expr(e)),
-            ExprKind::Ternary(a, b, c) | ExprKind::MatrixElement(a, b, c) => {
-                [a, b, c].into_iter().for_each(|e| self.expr(e));
-            }
-            ExprKind::Comma(list) | ExprKind::Construct(list) | ExprKind::Aggregate(list) => {
-                list.iter().for_each(|e| self.expr(e));
-            }
-            ExprKind::ConstructIn(space, list) => {
-                self.expr(space);
-                list.iter().for_each(|e| self.expr(e));
-            }
-            ExprKind::Call(_, arguments) | ExprKind::Builtin(_, arguments) => {
-                for argument in arguments {
-                    match argument {
-                        Argument::In(expr) => self.expr(expr),
-                        Argument::Out(place) => self.place(place),
-                    }
-                }
-            }
-            ExprKind::Closure(_, params, keywords) => {
-                params.iter().chain(keywords.iter().map(|(_, value)| value)).for_each(|e| self.expr(e));
-            }
+        if let ExprKind::Binary(op, a, b) = &expr.kind
+            && matches!(op, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge)
+        {
+            self.literal(a);
+            self.literal(b);
         }
-    }
-
-    fn place(&mut self, place: &Place) {
-        for access in &place.path {
-            match access {
-                Access::Field(_) => {}
-                Access::Element(a) | Access::Component(a) => self.expr(a),
-                Access::Matrix(a, b) => [a, b].into_iter().for_each(|e| self.expr(e)),
-            }
-        }
+        expr.parts(&mut |part| self.expr(part));
     }
 
     fn literal(&mut self, expr: &Expr) {

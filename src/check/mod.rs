@@ -19,6 +19,7 @@ mod expr;
 mod format;
 mod initial;
 mod operator;
+mod parts;
 mod place;
 mod rank;
 mod statement;

@@ -1,6 +1,6 @@
 //! What works and is odd: variables and parameters that nothing reads, or nothing writes. Asked for by `-Wall`.
 
-use super::typed::{Access, Argument, Expr, ExprKind, Place, Shader, Stmt, VarId};
+use super::typed::{Argument, Expr, ExprKind, Place, Shader, Stmt, VarId};
 use std::collections::HashSet;
 use velour_grammar::{Diagnostic, Diagnostics};
 
@@ -80,75 +80,39 @@ impl Uses {
     /// An expression whose value nobody takes: what it changes is not read by that.
     fn effect(&mut self, expr: &Expr) {
         match &expr.kind {
-            ExprKind::Assign(place, value) | ExprKind::Update(_, place, value) => {
-                self.place(place);
-                self.expr(value);
+            ExprKind::Assign(place, _) | ExprKind::Update(_, place, _) | ExprKind::Step { place, .. } => {
+                self.written.insert(place.var);
+                expr.parts(&mut |part| self.expr(part));
             }
-            ExprKind::Step { place, .. } => self.place(place),
             ExprKind::Comma(parts) => parts.iter().for_each(|part| self.effect(part)),
             _ => self.expr(expr),
         }
     }
 
-    fn place(&mut self, place: &Place) {
-        self.written.insert(place.var);
-        for access in &place.path {
-            match access {
-                Access::Field(_) => {}
-                Access::Element(at) | Access::Component(at) => self.expr(at),
-                Access::Matrix(row, column) => {
-                    self.expr(row);
-                    self.expr(column);
-                }
-            }
-        }
-    }
-
     fn expr(&mut self, expr: &Expr) {
         match &expr.kind {
-            ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::String(_) => {}
             ExprKind::Var(var) => {
                 self.read.insert(*var);
             }
-            ExprKind::Convert(inner) | ExprKind::Unary(_, inner) | ExprKind::Field(inner, _) => self.expr(inner),
-            ExprKind::Binary(_, a, b) | ExprKind::SpaceToSpace(a, b) | ExprKind::Index(a, b) => {
-                [a, b].into_iter().for_each(|part| self.expr(part));
-            }
-            ExprKind::Ternary(a, b, c) | ExprKind::MatrixElement(a, b, c) => {
-                [a, b, c].into_iter().for_each(|part| self.expr(part));
-            }
-            ExprKind::Comma(parts) | ExprKind::Construct(parts) | ExprKind::Aggregate(parts) => {
-                parts.iter().for_each(|part| self.expr(part));
-            }
-            ExprKind::ConstructIn(space, parts) => {
-                self.expr(space);
-                parts.iter().for_each(|part| self.expr(part));
-            }
             // Here the value is taken, so the variable is read too.
-            ExprKind::Assign(place, value) | ExprKind::Update(_, place, value) => {
-                self.place(place);
-                self.read.insert(place.var);
-                self.expr(value);
-            }
-            ExprKind::Step { place, .. } => {
-                self.place(place);
-                self.read.insert(place.var);
+            ExprKind::Assign(place, _) | ExprKind::Update(_, place, _) | ExprKind::Step { place, .. } => {
+                self.both(place)
             }
             ExprKind::Call(_, args) | ExprKind::Builtin(_, args) => args.iter().for_each(|arg| self.argument(arg)),
-            ExprKind::Closure(_, args, keywords) => {
-                args.iter().chain(keywords.iter().map(|(_, value)| value)).for_each(|arg| self.expr(arg));
-            }
+            _ => {}
         }
+        expr.parts(&mut |part| self.expr(part));
+    }
+
+    fn both(&mut self, place: &Place) {
+        self.written.insert(place.var);
+        self.read.insert(place.var);
     }
 
     /// What a function writes to may also be read by it.
     fn argument(&mut self, arg: &Argument) {
-        match arg {
-            Argument::In(expr) => self.expr(expr),
-            Argument::Out(place) => {
-                self.place(place);
-                self.read.insert(place.var);
-            }
+        if let Argument::Out(place) = arg {
+            self.both(place);
         }
     }
 }

@@ -87,7 +87,7 @@ impl Lower<'_> {
     }
 
     /// The registers of what is read only, and the place that is written.
-    fn asked(&mut self, args: &[Argument]) -> (Vec<Reg>, Option<Target>) {
+    pub(super) fn asked(&mut self, args: &[Argument]) -> (Vec<Reg>, Option<Target>) {
         let (mut read, mut out) = (Vec::new(), None);
         for given in self.given(args) {
             match given {
@@ -99,22 +99,30 @@ impl Lower<'_> {
     }
 
     /// Writes what was found, and leaves what was there where nothing was.
-    pub(super) fn take_found(&mut self, out: &Target, old: &[Reg], results: &[Reg]) {
-        let new =
-            results[1..].iter().zip(old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect::<Vec<_>>();
+    fn take_found(&mut self, out: &Target, old: &[Reg], results: &[Reg]) {
+        let new = self.found_or(results, old);
         self.write_flat(out, &new);
+    }
+
+    /// The values behind the first of some results where that says that they were found, else others.
+    pub(super) fn found_or(&mut self, results: &[Reg], old: &[Reg]) -> Vec<Reg> {
+        results[1..].iter().zip(old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect()
+    }
+
+    /// Asks for a value of the type of a place, and writes it there where it is found; gives whether it is.
+    pub(super) fn ask(&mut self, out: &Target, src: Vec<Reg>, routine: impl FnOnce(AttributeType) -> Routine) -> Reg {
+        let old = self.load(out);
+        let old = self.flat_regs(&old);
+        let results = self.b.call(routine(self.attribute_type(&old)), src, self.span);
+        self.take_found(out, &old, &results);
+        results[0]
     }
 
     fn dict_value(&mut self, args: &[Argument], call: &Expr) -> Value {
         let (read, out) = self.asked(args);
         self.at(call.span);
         let Some(out) = out else { return Value::Regs(vec![self.b.int(0)]) };
-        let old = self.load(&out);
-        let old = self.flat_regs(&old);
-        let ty = self.attribute_type(&old);
-        let results = self.b.call(Routine::DictValue(ty), read, self.span);
-        self.take_found(&out, &old, &results);
-        Value::Regs(vec![results[0]])
+        Value::Regs(vec![self.ask(&out, read, Routine::DictValue)])
     }
 
     /// `trace(from, direction, "mindist", …)`: of the options those that limit the ray are passed on.
@@ -123,11 +131,9 @@ impl Lower<'_> {
         let values: Vec<Vec<Reg>> = self.operands(&exprs).iter().map(|value| self.regs(value)).collect();
         self.at(call.span);
         let (mut least, mut most) = (self.b.float(0.0), self.b.float(1e30));
-        for (option, value) in
-            exprs.iter().zip(&values).skip(2).step_by(2).map(|(expr, _)| expr).zip(values.iter().skip(3).step_by(2))
-        {
-            let ExprKind::String(name) = &option.kind else { continue };
-            match (name.as_str(), value.first()) {
+        for (option, given) in exprs[2..].chunks_exact(2).zip(values[2..].chunks_exact(2)) {
+            let ExprKind::String(name) = &option[0].kind else { continue };
+            match (name.as_str(), given[1].first()) {
                 ("mindist", Some(&reg)) if self.b.program.kind(reg) == Kind::Float => least = reg,
                 ("maxdist", Some(&reg)) if self.b.program.kind(reg) == Kind::Float => most = reg,
                 _ => {}

@@ -4,7 +4,7 @@ use super::spec::{Binding, Layer};
 use super::state::Lower;
 use super::value::{Value, kind_of, zero_of};
 use crate::check::typed::{ExprKind, ShaderParam, VarId};
-use crate::ir::op::{AttributeOf, AttributeQuery, AttributeType, Routine};
+use crate::ir::op::{AttributeOf, AttributeQuery, Routine};
 use crate::ir::program::*;
 use crate::lang::globals::Global;
 use crate::lang::path::{Step, part, root, steps};
@@ -62,20 +62,13 @@ impl Lower<'_> {
     /// The userdata of a name where the point has it, else the value.
     fn userdata(&mut self, name: &str, value: Value) -> Value {
         let Value::Regs(old) = &value else { return value };
-        let count = old.len() as u32;
-        let query = match old.first().map(|&reg| self.b.program.kind(reg)) {
-            Some(Kind::Float) => AttributeType::Floats(count),
-            Some(Kind::Int) => AttributeType::Ints(count),
-            Some(Kind::String) => AttributeType::Strings(count),
-            Some(Kind::Closure) | None => return value,
-        };
+        if old.first().is_none_or(|&reg| self.b.program.kind(reg) == Kind::Closure) {
+            return value;
+        }
+        let query = AttributeQuery { ty: self.attribute_type(old), slopes: false, of: AttributeOf::Attribute };
         let asked = vec![self.symbol(""), self.symbol(name)];
-        let results = self.b.call(
-            Routine::Attribute(AttributeQuery { ty: query, slopes: false, of: AttributeOf::Attribute }),
-            asked,
-            self.span,
-        );
-        let new = results[1..].iter().zip(old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
+        let results = self.b.call(Routine::Attribute(query), asked, self.span);
+        let new = self.found_or(&results, old);
         Value::Regs(new)
     }
 

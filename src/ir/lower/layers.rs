@@ -13,7 +13,7 @@ use super::shared::Shared;
 use super::spec::{Binding, Layer, LowerOptions};
 use super::state::{Bound, Frame, Lower};
 use super::value::Value;
-use crate::check::typed::{Access, Argument, Expr, ExprKind, Place, Shader, ShaderParam, Stmt, VarId};
+use crate::check::typed::{Argument, Expr, ExprKind, Place, Shader, ShaderParam, Stmt, VarId};
 use crate::ir::build::Builder;
 use crate::ir::program::{Const, Node, Program, Reg};
 use crate::lang::globals::Global;
@@ -70,12 +70,11 @@ impl Shared<'_> {
 fn runs_in_turn(layers: &[Layer], number: usize, options: LowerOptions) -> bool {
     let (shader, lazy) = (&layers[number].shader, options.lazy);
     let kept = options.outputs && shader.params.iter().any(|param| param.output);
-    let feeds = layers.iter().flat_map(sources_of).any(|source| source == number);
-    let traces = || calls_trace(shader);
+    let feeds = || layers.iter().flat_map(sources_of).any(|source| source == number);
     kept || !lazy.layers
         || (!lazy.globals && assigns_globals(shader))
-        || (!lazy.unconnected && !feeds)
-        || (!lazy.traces && traces())
+        || (!lazy.unconnected && !feeds())
+        || (!lazy.traces && calls_trace(shader))
 }
 
 /// The layers that feed one, each as often as it does.
@@ -100,7 +99,6 @@ fn run_layer<'a>(builder: Builder, shared: Shared<'a>, number: usize) -> (Builde
     let layer = &shared.layers[number];
     let read = read_params(shared.layers, number, shared.options.outputs);
     let mut lower = Lower::new(builder, &layer.shader, number as u32, read);
-    (lower.layer_name, lower.group_name) = (layer.name.clone(), shared.group_name.clone());
     lower.shared = shared;
     lower.at(layer.shader.span);
     lower.take_globals();
@@ -286,41 +284,20 @@ fn use_of(stmt: &Stmt, var: VarId) -> Use {
 }
 
 fn use_in(expr: &Expr, var: VarId) -> Use {
+    // As deep as the expression: the stack grows where parts are taken, and here where they are not.
+    stacker::maybe_grow(64 << 10, 1 << 20, || use_of_expr(expr, var))
+}
+
+fn use_of_expr(expr: &Expr, var: VarId) -> Use {
     use ExprKind::*;
-    let all = |exprs: &[&Expr]| {
-        let uses = exprs.iter().map(|expr| use_in(expr, var));
-        uses.into_iter().find(|found| *found != Use::None).unwrap_or(Use::None)
-    };
     let parted = |found: Use| if found == Use::None { Use::None } else { Use::Parted };
+    let then = |found: Use, next: &dyn Fn() -> Use| if found == Use::None { next() } else { found };
     match &expr.kind {
-        Int(_) | Float(_) | String(_) => Use::None,
-        Var(own) => {
-            if *own == var {
-                Use::Together
-            } else {
-                Use::None
-            }
-        }
-        Convert(a) | Unary(_, a) | Field(a, _) => use_in(a, var),
-        Binary(_, a, b) => match use_in(a, var) {
-            // The right side of `&&` and `||` may be left out.
-            Use::None if matches!(expr.kind, Binary(BinaryOp::And | BinaryOp::Or, ..)) => parted(use_in(b, var)),
-            Use::None => use_in(b, var),
-            found => found,
-        },
-        Index(a, b) | SpaceToSpace(a, b) => all(&[a, b]),
-        MatrixElement(a, b, c) => all(&[a, b, c]),
-        Ternary(a, b, c) => match use_in(a, var) {
-            Use::None => parted(all(&[b, c])),
-            found => found,
-        },
-        Comma(list) | Construct(list) | Aggregate(list) => all(&list.iter().collect::<Vec<_>>()),
-        ConstructIn(space, list) => all(&std::iter::once(&**space).chain(list).collect::<Vec<_>>()),
-        Assign(place, value) | Update(_, place, value) => match use_in_place(place, var) {
-            Use::None => use_in(value, var),
-            found => found,
-        },
-        Step { place, .. } => use_in_place(place, var),
+        Var(own) if *own == var => Use::Together,
+        // The right side may be left out.
+        Binary(BinaryOp::And | BinaryOp::Or, a, b) => then(use_in(a, var), &|| parted(use_in(b, var))),
+        Ternary(a, b, c) => then(use_in(a, var), &|| parted(then(use_in(b, var), &|| use_in(c, var)))),
+        Assign(place, _) | Update(_, place, _) | Step { place, .. } if place.var == var => Use::Together,
         Call(_, args) | Builtin(_, args) => {
             // A function works on the variable itself, maybe in a branch of its own.
             let call = matches!(expr.kind, Call(..));
@@ -331,7 +308,11 @@ fn use_in(expr: &Expr, var: VarId) -> Use {
             };
             args.iter().map(of).find(|found| *found != Use::None).unwrap_or(Use::None)
         }
-        Closure(_, params, keywords) => all(&params.iter().chain(keywords.iter().map(|k| &k.1)).collect::<Vec<_>>()),
+        _ => {
+            let mut found = Use::None;
+            expr.parts(&mut |part| found = then(found, &|| use_in(part, var)));
+            found
+        }
     }
 }
 
@@ -372,18 +353,13 @@ fn count_in(expr: &Expr, var: VarId) -> usize {
 }
 
 fn use_in_place(place: &Place, var: VarId) -> Use {
-    if place.var == var {
-        return Use::Together;
-    }
-    let of = |access: &Access| match access {
-        Access::Field(_) => Use::None,
-        Access::Element(at) | Access::Component(at) => use_in(at, var),
-        Access::Matrix(row, column) => match use_in(row, var) {
-            Use::None => use_in(column, var),
-            found => found,
-        },
-    };
-    place.path.iter().map(of).find(|found| *found != Use::None).unwrap_or(Use::None)
+    let mut found = if place.var == var { Use::Together } else { Use::None };
+    place.indices(&mut |index| {
+        if found == Use::None {
+            found = use_in(index, var);
+        }
+    });
+    found
 }
 
 /// The parameters of a layer that somebody reads: later layers, or the host when outputs are kept.

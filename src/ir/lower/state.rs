@@ -64,8 +64,6 @@ pub(super) struct Lower<'a> {
     pub(super) shared: Shared<'a>,
     /// Parameters that get their value when they are first read.
     pub(super) waiting: Vec<VarId>,
-    pub(super) layer_name: String,
-    pub(super) group_name: String,
     pub(super) span: Span,
 }
 
@@ -88,8 +86,6 @@ impl<'a> Lower<'a> {
             layer,
             shared: Shared::default(),
             waiting: Vec::new(),
-            layer_name: String::new(),
-            group_name: String::new(),
             span: Span::NONE,
         }
     }

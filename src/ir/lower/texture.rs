@@ -149,23 +149,12 @@ impl Lower<'_> {
 
     /// `gettextureinfo(file, [s, t,] name, value)`
     fn texture_info(&mut self, args: &[Argument], call: &Expr) -> Value {
-        let (mut read, mut out) = (Vec::new(), None);
-        for given in self.given(args) {
-            match given {
-                Given::In(value) => read.push(self.regs(&value)[0]),
-                Given::Out(target) => out = Some(target),
-            }
-        }
+        let (read, out) = self.asked(args);
         self.at(call.span);
         let zero = self.b.float(0.0);
         let (file, name) = (read[0], read[read.len() - 1]);
         let (s, t) = if read.len() == 4 { (read[1], read[2]) } else { (zero, zero) };
         let Some(out) = out else { return Value::Regs(vec![self.b.int(0)]) };
-        let old = self.load(&out);
-        let old = self.flat_regs(&old);
-        let ty = self.attribute_type(&old);
-        let results = self.b.call(Routine::TextureInfo(ty), vec![file, name, s, t], self.span);
-        self.take_found(&out, &old, &results);
-        Value::Regs(vec![results[0]])
+        Value::Regs(vec![self.ask(&out, vec![file, name, s, t], Routine::TextureInfo)])
     }
 }

@@ -74,23 +74,15 @@ impl Lower<'_> {
         let asked = Symbol(self.b.known_int(asked)?);
         Some(match asked.text() {
             "shader:shadername" => self.shader.name.clone(),
-            "shader:layername" => self.layer_name.clone(),
-            "shader:groupname" => self.group_name.clone(),
+            "shader:layername" => self.shared.layers[self.layer as usize].name.clone(),
+            "shader:groupname" => self.shared.group_name.clone(),
             _ => return None,
         })
     }
 
     /// Asks the host for a value of the type of a place, and writes it there where it is found.
     pub(super) fn attribute_of(&mut self, of: AttributeOf, out: &Target, inputs: Vec<Reg>) -> Reg {
-        let old = self.load(out);
-        let old = self.flat_regs(&old);
-        let ty = self.attribute_type(&old);
-        let query = AttributeQuery { ty, slopes: false, of };
-        let results = self.b.call(Routine::Attribute(query), inputs, self.span);
-        let new: Vec<Reg> =
-            results[1..].iter().zip(&old).map(|(&new, &old)| self.b.select(results[0], new, old)).collect();
-        self.write_flat(out, &new);
-        results[0]
+        self.ask(out, inputs, |ty| Routine::Attribute(AttributeQuery { ty, slopes: false, of }))
     }
 
     /// Writes registers to an output argument, element by element when it is an array.
