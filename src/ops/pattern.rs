@@ -11,7 +11,7 @@ use std::collections::HashMap;
 const REMEMBERED: usize = 256;
 
 thread_local! {
-    static COMPILED: RefCell<HashMap<String, Option<Regex>>> = RefCell::new(HashMap::new());
+    static COMPILED: RefCell<HashMap<String, Result<Regex, String>>> = RefCell::new(HashMap::new());
 }
 
 /// Looks for the pattern anywhere in the subject; gives 1 or 0.
@@ -29,18 +29,25 @@ pub fn regex_match(subject: &str, pattern: &str, positions: &mut [i32]) -> i32 {
 
 /// What is wrong with a pattern, if anything.
 pub fn flaw(pattern: &str) -> Option<String> {
-    Regex::new(pattern).err().map(|error| error.to_string())
+    with_compiled(pattern, |regex| regex.as_ref().err().cloned())
 }
 
 fn find(subject: &str, expression: &str, pattern: &str, positions: &mut [i32]) -> i32 {
+    with_compiled(expression, |regex| {
+        let captures = regex.as_ref().ok().and_then(|regex| regex.captures(subject).ok().flatten());
+        fill(positions, captures.as_ref(), pattern.len(), subject.len());
+        captures.is_some() as i32
+    })
+}
+
+/// Does something with an expression that is compiled once, or with what is wrong with it.
+fn with_compiled<T>(expression: &str, work: impl FnOnce(&Result<Regex, String>) -> T) -> T {
     COMPILED.with_borrow_mut(|compiled| {
         if compiled.len() >= REMEMBERED && !compiled.contains_key(expression) {
             compiled.clear();
         }
-        let regex = compiled.entry(expression.to_owned()).or_insert_with(|| Regex::new(expression).ok());
-        let captures = regex.as_ref().and_then(|regex| regex.captures(subject).ok().flatten());
-        fill(positions, captures.as_ref(), pattern.len(), subject.len());
-        captures.is_some() as i32
+        let compile = || Regex::new(expression).map_err(|error| error.to_string());
+        work(compiled.entry(expression.to_owned()).or_insert_with(compile))
     })
 }
 
