@@ -198,6 +198,10 @@ fn info_takes_the_options_of_oslinfo() {
     assert_eq!(value["params"][1]["default"], serde_json::json!([1, 0.5, 0]));
     assert_eq!(value["params"][4]["output"], serde_json::json!(true));
     assert_eq!(place.say(&["info", "-param", "none", "taker"]).0, 1);
+    place.file("odd.osl", "shader odd(string s = \"a\\a\\\"b\") {}");
+    let odd = place.prints(&["info", "--json", "odd"]);
+    let value: serde_json::Value = serde_json::from_str(&odd).unwrap_or_else(|error| panic!("{error}: {odd}"));
+    assert_eq!(value["params"][0]["name"], serde_json::json!("s"));
 }
 
 #[test]

@@ -38,7 +38,7 @@ mod tree;
 mod osl;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
-pub use render::Format;
+pub use render::{Format, json};
 pub use source::{Location, Sources};
 pub use span::Span;
 

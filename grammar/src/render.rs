@@ -265,8 +265,8 @@ impl<'a> Files<'a> for Sources {
     }
 }
 
-/// A text as a JSON string.
-fn json(text: &str) -> String {
+/// A text as a JSON string, in its quotes.
+pub fn json(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {

@@ -30,7 +30,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("W0501", "a float stored in an int"),
     ("W0502", "an ambiguous call"),
     ("W0505", "a string that is none of a closure's choices"),
-    ("W0506", "a closure keyword that asks for what velour does not model"),
+    ("W0506", "a closure, keyword or option that velour does not have or model, so that it has no effect"),
     ("W0503", "an index outside its array"),
     ("W0504", "a function defined twice"),
     ("W0510", "a format string that is computed"),

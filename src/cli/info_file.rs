@@ -3,6 +3,7 @@
 use crate::check::typed::{Expr, ExprKind, Metadata, Shader, ShaderParam, Variable};
 use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{ShaderKind, UnaryOp};
+use velour_grammar::json;
 
 /// The declaration of a shader as text.
 pub fn shader_text(shader: &Shader) -> String {
@@ -47,18 +48,18 @@ pub fn shader_json(shader: &Shader) -> String {
     let params = shader.params.iter().map(|param| {
         let variable = &shader.variables[param.var.0 as usize];
         format!(
-            "\n  {{\"name\":{:?},\"type\":{:?},\"output\":{},\"default\":{},\"metadata\":{}}}",
-            variable.name,
-            declared_type(variable, param).to_string(),
+            "\n  {{\"name\":{},\"type\":{},\"output\":{},\"default\":{},\"metadata\":{}}}",
+            json(&variable.name),
+            json(&declared_type(variable, param).to_string()),
             param.output,
             param.default.as_ref().map_or("null".to_owned(), json_value),
             json_metadata(&param.metadata)
         )
     });
     format!(
-        "{{\"kind\":\"{}\",\"name\":{:?},\"metadata\":{},\"params\":[{}]}}\n",
+        "{{\"kind\":\"{}\",\"name\":{},\"metadata\":{},\"params\":[{}]}}\n",
         kind_of(shader),
-        shader.name,
+        json(&shader.name),
         json_metadata(&shader.metadata),
         params.collect::<Vec<_>>().join(",")
     )
@@ -66,8 +67,8 @@ pub fn shader_json(shader: &Shader) -> String {
 
 fn json_metadata(metadata: &[Metadata]) -> String {
     let entry = |entry: &Metadata| {
-        let (name, ty) = (&entry.name, entry.ty.to_string());
-        format!("{{\"name\":{name:?},\"type\":{ty:?},\"value\":{}}}", json_value(&entry.value))
+        let (name, ty) = (json(&entry.name), json(&entry.ty.to_string()));
+        format!("{{\"name\":{name},\"type\":{ty},\"value\":{}}}", json_value(&entry.value))
     };
     format!("[{}]", metadata.iter().map(entry).collect::<Vec<_>>().join(","))
 }
@@ -75,7 +76,7 @@ fn json_metadata(metadata: &[Metadata]) -> String {
 /// A constant as a list; JSON has no infinities, which are then null.
 fn json_value(value: &Expr) -> String {
     let mut parts = Vec::new();
-    match constants(value, &mut parts) {
+    match constants(value, json, &mut parts) {
         Some(()) => {
             parts
                 .iter_mut()
@@ -127,37 +128,37 @@ fn known(ty: &Type, value: &Expr) -> Option<String> {
         return Some("0".to_owned());
     }
     let mut parts = Vec::new();
-    constants(value, &mut parts)?;
+    constants(value, |text| format!("{text:?}"), &mut parts)?;
     let plain = parts.len() == 1 && !ty.is_array();
     Some(if plain { parts.remove(0) } else { format!("[ {} ]", parts.join(" ")) })
 }
 
-/// The numbers and strings of a constant expression, in order.
-fn constants(value: &Expr, out: &mut Vec<String>) -> Option<()> {
+/// The numbers and strings of a constant expression, in order; strings are `quoted`.
+fn constants(value: &Expr, quoted: fn(&str) -> String, out: &mut Vec<String>) -> Option<()> {
     match &value.kind {
         ExprKind::Int(x) => out.push(x.to_string()),
         ExprKind::Float(x) => out.push(float_text(*x)),
-        ExprKind::String(x) => out.push(format!("{x:?}")),
+        ExprKind::String(x) => out.push(quoted(x)),
         ExprKind::Convert(inner) => {
             let start = out.len();
-            constants(inner, out)?;
+            constants(inner, quoted, out)?;
             spread(&value.ty, start, out);
         }
         ExprKind::Unary(UnaryOp::Neg, inner) => {
             let start = out.len();
-            constants(inner, out)?;
+            constants(inner, quoted, out)?;
             for text in &mut out[start..] {
                 *text = text.strip_prefix('-').map_or(format!("-{text}"), str::to_owned);
             }
         }
         ExprKind::Construct(parts) | ExprKind::Aggregate(parts) => {
             let start = out.len();
-            parts.iter().try_for_each(|part| constants(part, out))?;
+            parts.iter().try_for_each(|part| constants(part, quoted, out))?;
             spread(&value.ty, start, out);
         }
         ExprKind::ConstructIn(space, parts) => {
-            constants(space, out)?;
-            parts.iter().try_for_each(|part| constants(part, out))?;
+            constants(space, quoted, out)?;
+            parts.iter().try_for_each(|part| constants(part, quoted, out))?;
         }
         _ => return None,
     }

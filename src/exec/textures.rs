@@ -258,7 +258,8 @@ fn sampled(
         (value[n], dx[n], dy[n]) = (1.0, 0.0, 0.0);
     }
     if let Some(space) = how.space.filter(|_| n == 3) {
-        let linear = |c: [f32; 3]| transformc(space, ColorSpace::from_name("linear").unwrap_or(space), c);
+        let to = ColorSpace::from_name("linear").unwrap_or(space);
+        let linear = |c: [f32; 3]| transformc(space, to, c);
         let old = [value[0], value[1], value[2]];
         let new = linear(old);
         for slope in [&mut dx, &mut dy] {

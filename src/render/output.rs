@@ -143,7 +143,7 @@ fn write_png(image: &Image, writer: &mut impl Write) -> Result<(), String> {
 }
 
 /// The transfer curve of IEC 61966-2-1, clipped to [0, 1].
-fn srgb(linear: f32) -> f32 {
+pub(crate) fn srgb(linear: f32) -> f32 {
     let x = linear.clamp(0.0, 1.0);
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * pow(x, 1.0 / 2.4) - 0.055 }
 }

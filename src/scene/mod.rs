@@ -33,6 +33,7 @@ pub use geometry::{Geometry, Object, Primitive, Shape};
 pub use group::{Connection, GroupCompiler, GroupSpec, Hints, Layer, ParamType, ParamValue, Usage, Values};
 pub use nearest::nearest;
 pub use obj::{Attribute as MeshAttribute, LineFlaw};
+pub use places::Places;
 pub use scene::{Background, Material, Options, Scene};
 pub use shipped::SHIPPED;
 pub use source::SceneSource;

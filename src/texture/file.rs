@@ -32,8 +32,6 @@ pub enum TextureError {
         /// Bytes that textures may have.
         budget: u64,
     },
-    /// The host has no textures.
-    NoTextures,
 }
 
 impl fmt::Display for TextureError {
@@ -47,7 +45,6 @@ impl fmt::Display for TextureError {
                 let megabytes = budget >> 20;
                 write!(f, "the texture {} does not fit into the {megabytes} MB that textures may have", path.display())
             }
-            TextureError::NoTextures => f.write_str("there are no textures here"),
         }
     }
 }

@@ -27,20 +27,18 @@ impl TextureFiles {
         if let Some(path) = std::env::var_os("TEXTUREPATH") {
             folders.extend(std::env::split_paths(&path));
         }
-        let (used, known, reading) = (AtomicU64::new(0), RwLock::default(), Mutex::default());
-        TextureFiles { folders, budget: default_budget(), used, known, reading }
+        TextureFiles::of(folders, default_budget())
     }
 
-    /// Limits the bytes of all textures together; by default half of the machine's memory.
-    pub fn with_budget(mut self, bytes: u64) -> Self {
-        self.budget = bytes;
-        self
-    }
-
-    /// Those of the same folders with another limit, none of them read yet.
+    /// Those of the same folders with another limit of the bytes of all together, which by default is half of the machine's memory; none of
+    /// them is read yet.
     pub fn limited(&self, bytes: u64) -> Self {
+        TextureFiles::of(self.folders.clone(), bytes)
+    }
+
+    fn of(folders: Vec<PathBuf>, budget: u64) -> Self {
         let (used, known, reading) = (AtomicU64::new(0), RwLock::default(), Mutex::default());
-        TextureFiles { folders: self.folders.clone(), budget: bytes, used, known, reading }
+        TextureFiles { folders, budget, used, known, reading }
     }
 
     /// The texture of a name.
@@ -73,11 +71,6 @@ impl TextureFiles {
         let here = Path::new(name);
         let beside = self.folders.iter().map(|folder| folder.join(name));
         std::iter::once(here.to_owned()).chain(beside).find(|path| !name.is_empty() && path.is_file())
-    }
-
-    /// Is there such a file?
-    pub fn exists(&self, name: &str) -> bool {
-        self.find(name).is_some()
     }
 }
 

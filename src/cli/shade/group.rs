@@ -5,7 +5,7 @@ use crate::cli::failure::Failure;
 use crate::cli::speak::say;
 use crate::compile::Compiler;
 use crate::scene::{
-    Connection, GroupSpec, Hints, Layer, ParamType, ParamValue, Place, ShaderFiles, Usage, Values, parse_group,
+    Connection, GroupSpec, Hints, Layer, ParamType, ParamValue, Place, Places, ShaderFiles, Usage, Values, parse_group,
 };
 use std::path::PathBuf;
 
@@ -173,13 +173,9 @@ fn add_text(text: &str, spec: &mut GroupSpec) -> Result<(), Failure> {
         Ok(read) => (text.to_owned(), read),
         Err(_) => ("--group".to_owned(), text.to_owned()),
     };
-    let at = |offset: usize| {
-        let before = &text[..offset.min(text.len())];
-        let line = before.matches('\n').count() as u32 + 1;
-        let column = before.chars().rev().take_while(|c| *c != '\n').count() as u32 + 1;
-        Place { file: name.as_str().into(), line, column }
-    };
-    let statements = parse_group(&text, &at).map_err(|error| Failure::Wrong(error.to_string()))?;
+    let places = Places::new(&name.as_str().into(), &text);
+    let statements =
+        parse_group(&text, &|offset| places.at(offset)).map_err(|error| Failure::Wrong(error.to_string()))?;
     spec.layers.extend(statements.layers);
     spec.connections.extend(statements.connections);
     Ok(())

@@ -1,6 +1,6 @@
 //! Outputs of a grid as image files: EXR, TIFF, PNG and HDR, of any number of channels where the format has them.
 
-use crate::math::elementary::pow;
+use crate::render::output::srgb;
 use exr::prelude as exr;
 use image::{ExtendedColorType, ImageEncoder};
 use std::fs::File;
@@ -99,12 +99,6 @@ fn save_tiff(grid: &Grid, writer: BufWriter<File>, numbers: Option<Numbers>) -> 
         (channels, _) => return Err(format!("a TIFF of {channels} channels cannot be written; an EXR can")),
     }
     .map_err(|error| error.to_string())
-}
-
-/// The transfer curve of IEC 61966-2-1.
-fn srgb(linear: f32) -> f32 {
-    let x = linear.clamp(0.0, 1.0);
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * pow(x, 1.0 / 2.4) - 0.055 }
 }
 
 /// One or three channels; a picture that people look at is in sRGB, as testshade saves it.

@@ -82,6 +82,25 @@ fn f82_tint() -> ClosureDef {
     .without(FACETS)
 }
 
+/// Which halves a boundary has.
+const REFLECT: Ints = Ints::Uniform(0);
+const REFRACT: Ints = Ints::Uniform(1);
+const BOTH: Ints = Ints::Uniform(2);
+
+/// White facets of a dielectric along a normal and a tangent, of a width for each axis.
+fn rough(facets: Facets, axes: (Normal, Vector, [Floats; 2]), eta: &[Floats], refract: Ints) -> Walls<'_> {
+    let (normal, tangent, widths) = axes;
+    let distribution = Word::Same(Some(Some(facets)));
+    let mut walls = Walls::facets(Term::Dielectric, distribution, (normal, tangent), widths, eta);
+    walls.refract = refract;
+    walls
+}
+
+/// Facets alike all around.
+fn round(normal: Normal, width: Float) -> (Normal, Vector, [Floats; 2]) {
+    (normal, Vector(normal.0), [width.0; 2])
+}
+
 arguments! {
     struct MultiGlass {
         N: Normal = NORMAL,
@@ -94,16 +113,7 @@ arguments! {
 fn multi_ggx_glass() -> ClosureDef {
     let doc = "rough glass that loses no light between its facets; its color is the closure's weight (Cycles)";
     ClosureDef::new("microfacet_multi_ggx_glass", doc, |a: MultiGlass, leaf| {
-        let eta = [a.eta.0];
-        let mut walls = Walls::facets(
-            Term::Dielectric,
-            Word::Same(Some(Some(Facets::Ggx))),
-            (a.N, Vector(a.N.0)),
-            [a.ag.0; 2],
-            &eta,
-        );
-        walls.refract = Ints::Uniform(2);
-        walls.lobes(leaf);
+        rough(Facets::Ggx, round(a.N, a.ag), &[a.eta.0], BOTH).lobes(leaf);
     })
     .without(FACETS)
 }
@@ -121,8 +131,7 @@ arguments! {
 fn multi_ggx_aniso() -> ClosureDef {
     let doc = "rough mirror that loses no light between its facets; its color is the closure's weight (Cycles)";
     ClosureDef::new("microfacet_multi_ggx_aniso", doc, |a: MultiAniso, leaf| {
-        Walls::facets(Term::Dielectric, Word::Same(Some(Some(Facets::Ggx))), (a.N, a.T), [a.ax.0, a.ay.0], &[ALL])
-            .lobes(leaf);
+        rough(Facets::Ggx, (a.N, a.T, [a.ax.0, a.ay.0]), &[ALL], REFLECT).lobes(leaf);
     })
     .without(FACETS)
 }
@@ -137,8 +146,7 @@ arguments! {
 fn plain_facets(name: &'static str, facets: Facets) -> ClosureDef {
     let doc = "rough mirror, as early versions of Cycles had it";
     ClosureDef::new(name, doc, move |a: PlainFacets, leaf| {
-        Walls::facets(Term::Dielectric, Word::Same(Some(Some(facets))), (a.N, Vector(a.N.0)), [a.ag.0; 2], &[ALL])
-            .lobes(leaf);
+        rough(facets, round(a.N, a.ag), &[ALL], REFLECT).lobes(leaf);
     })
     .without(FACETS)
 }
@@ -154,11 +162,7 @@ arguments! {
 fn facets_refraction(name: &'static str, facets: Facets) -> ClosureDef {
     let doc = "rough refraction, as early versions of Cycles had it";
     ClosureDef::new(name, doc, move |a: FacetsRefraction, leaf| {
-        let eta = [a.eta.0];
-        let mut walls =
-            Walls::facets(Term::Dielectric, Word::Same(Some(Some(facets))), (a.N, Vector(a.N.0)), [a.ag.0; 2], &eta);
-        walls.refract = Ints::Uniform(1);
-        walls.lobes(leaf);
+        rough(facets, round(a.N, a.ag), &[a.eta.0], REFRACT).lobes(leaf);
     })
     .without(FACETS)
 }
@@ -180,9 +184,8 @@ fn thin_glass() -> ClosureDef {
     let doc = "a sheet of glass, by one boundary: light that passes is bent once and not back (Cycles)";
     ClosureDef::new("thin_glass", doc, |a: ThinGlass, leaf| {
         let eta = [a.ior.0];
-        let mut walls =
-            Walls::facets(Term::Dielectric, Word::Same(Some(Some(Facets::Ggx))), (a.N, a.T), [a.roughness.0; 2], &eta);
-        (walls.refract, walls.tints) = (Ints::Uniform(2), [a.reflection, a.transmission]);
+        let mut walls = rough(Facets::Ggx, (a.N, a.T, [a.roughness.0; 2]), &eta, BOTH);
+        walls.tints = [a.reflection, a.transmission];
         walls.lobes(leaf);
     })
     .without(FACETS)
@@ -239,7 +242,7 @@ fn hair_reflection() -> ClosureDef {
     let doc = "what hair reflects, by rough facets along and across the fiber (Cycles)";
     ClosureDef::new("hair_reflection", doc, |a: HairHalf, leaf| {
         let widths = [a.roughnessu.0, a.roughnessv.0];
-        Walls::facets(Term::Dielectric, Word::Same(Some(Some(Facets::Ggx))), (a.N, a.T), widths, &[ALL]).lobes(leaf);
+        rough(Facets::Ggx, (a.N, a.T, widths), &[ALL], REFLECT).lobes(leaf);
     })
     .without(FACETS)
 }
@@ -264,7 +267,7 @@ arguments! {
 fn hair_chiang() -> ClosureDef {
     let doc = "a fiber of hair (Chiang et al. 2016) without coat and tilt of its scales (Cycles)";
     ClosureDef::new("hair_chiang", doc, |a: HairChiang, leaf| {
-        Fiber { eta: a.eta.0, along: a.roughnessu.0, around: a.roughnessv.0, absorption: a.sigma.0 }.lobes(leaf, a.N);
+        Fiber::plain(a.eta.0, a.roughnessu.0, a.roughnessv.0, a.sigma.0).lobes(leaf, a.N, None);
     })
     .without(super::hair::WAIVERS)
 }
@@ -287,7 +290,7 @@ fn hair_huang() -> ClosureDef {
     let doc = "a fiber of hair, by the model of Chiang et al. 2016 instead of that of Huang et al. 2022 (Cycles)";
     ClosureDef::new("hair_huang", doc, |a: HairHuang, leaf| {
         let width = a.roughness.0;
-        Fiber { eta: a.eta.0, along: width, around: width, absorption: a.sigma.0 }.lobes(leaf, a.N);
+        Fiber::plain(a.eta.0, width, width, a.sigma.0).lobes(leaf, a.N, None);
     })
     .without(super::hair::WAIVERS)
 }

@@ -43,49 +43,60 @@ pub(super) fn chiang() -> ClosureDef {
     let doc =
         "a fiber of hair or fur (Chiang, Bitterli, Tappan and Burley 2016), seen as a cylinder along curve_direction";
     ClosureDef::new("chiang_hair_bsdf", doc, |a: Chiang, leaf| {
-        let frame = leaf.frame(a.N, Some(a.curve_direction));
-        let (r, tt, trt) = (
-            (a.tint_R, a.longitudual_roughness_R, a.azimuthal_roughness_R),
-            (a.tint_TT, a.longitudual_roughness_TT, a.azimuthal_roughness_TT),
-            (a.tint_TRT, a.longitudual_roughness_TRT, a.azimuthal_roughness_TRT),
-        );
+        let path = |tint: Color, along: Float, around: Float| Path { tint: tint.0, along: along.0, around: around.0 };
         // Paths of more crossings share the tint and the roughness of TRT.
-        let parts = [
-            (LobeKind::of::<Hair<0>>(), r),
-            (LobeKind::of::<Hair<1>>(), tt),
-            (LobeKind::of::<Hair<2>>(), trt),
-            (LobeKind::of::<Hair<3>>(), trt),
-        ];
-        for (kind, (tint, along, around)) in parts {
-            let ([tr, tg, tb], [ar, ag, ab]) = (tint.0, a.absorption_coefficient.0);
-            let params = [a.ior.0, along.0, around.0, a.cuticle_angle.0, ar, ag, ab, tr, tg, tb];
-            leaf.lobe(kind, frame, &params);
-        }
+        let trt = path(a.tint_TRT, a.longitudual_roughness_TRT, a.azimuthal_roughness_TRT);
+        let fiber = Fiber {
+            eta: a.ior.0,
+            angle: a.cuticle_angle.0,
+            absorption: a.absorption_coefficient.0,
+            paths: [
+                path(a.tint_R, a.longitudual_roughness_R, a.azimuthal_roughness_R),
+                path(a.tint_TT, a.longitudual_roughness_TT, a.azimuthal_roughness_TT),
+                trt,
+                trt,
+            ],
+        };
+        fiber.lobes(leaf, a.N, Some(a.curve_direction));
     })
     .without(WAIVERS)
 }
 
-/// A white fiber along the tangent of the surface, whose scales are not tilted.
+/// Light that has met a fiber so often: its color and widths.
+#[derive(Clone, Copy)]
+struct Path {
+    tint: [Floats; 3],
+    along: Floats,
+    around: Floats,
+}
+
+/// A fiber.
 pub(super) struct Fiber {
-    pub eta: Floats,
-    pub along: Floats,
-    pub around: Floats,
-    pub absorption: [Floats; 3],
+    eta: Floats,
+    angle: Floats,
+    absorption: [Floats; 3],
+    paths: [Path; 4],
 }
 
 impl Fiber {
-    pub(super) fn lobes(&self, leaf: &mut LeafMaker<'_>, normal: Normal) {
-        let frame = leaf.frame(normal, None);
+    /// A white fiber of the same widths for all light, whose scales are not tilted.
+    pub(super) fn plain(eta: Floats, along: Floats, around: Floats, absorption: [Floats; 3]) -> Self {
+        let path = Path { tint: [Floats::Uniform(1.0); 3], along, around };
+        Fiber { eta, angle: Floats::Uniform(0.5), absorption, paths: [path; 4] }
+    }
+
+    /// Adds its lobes; without a direction it lies along the tangent of the surface.
+    pub(super) fn lobes(&self, leaf: &mut LeafMaker<'_>, normal: Normal, direction: Option<Vector>) {
+        let frame = leaf.frame(normal, direction);
         let kinds = [
             LobeKind::of::<Hair<0>>(),
             LobeKind::of::<Hair<1>>(),
             LobeKind::of::<Hair<2>>(),
             LobeKind::of::<Hair<3>>(),
         ];
-        let ([r, g, b], one) = (self.absorption, Floats::Uniform(1.0));
-        for kind in kinds {
-            let params = [self.eta, self.along, self.around, Floats::Uniform(0.5), r, g, b, one, one, one];
-            leaf.lobe(kind, frame, &params);
+        for (kind, Path { tint: [tr, tg, tb], along, around }) in kinds.into_iter().zip(self.paths) {
+            let [r, g, b] = self.absorption;
+            leaf.lobe(kind, frame, &[self.eta, along, around, self.angle, r, g, b, tr, tg, tb]);
         }
     }
 }
