@@ -134,22 +134,15 @@ pub trait Scatter: Copy + 'static {
     fn view(&self, _wo: Vec3) -> View {
         View::default()
     }
-    /// The number of [`Scatter::view`] that is multiplied by [`Scatter::adjustment`] for choices that ask for it.
+    /// The number of [`Scatter::view`] that is multiplied by [`Scatter::adjust`] for choices that ask for it.
     const ADJUSTED: Option<usize> = None;
     /// Does a choice ask for an adjustment?
     fn adjusts(_choice: Choice) -> bool {
         false
     }
-    /// What depends on the viewer alone and takes too long, or too many branches, for the lane loops.
-    fn adjustment(&self, _wo: Vec3) -> f32 {
-        1.0
-    }
-    /// Multiplies numbers by [`Scatter::adjustment`] of many directions, one column a component, with the same bits.
-    fn adjust(&self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
-        for (i, value) in out.iter_mut().enumerate() {
-            *value *= self.adjustment(Vec3::new(x[i], y[i], z[i]));
-        }
-    }
+    /// Multiplies the numbers of lanes, each of its own model, by what depends on the viewer alone and takes too long, or too many
+    /// branches, for the lane loops; viewers are one column a component.
+    fn adjust(_model: impl Fn(usize) -> Self, _wo: [&[f32]; 3], _out: &mut [f32]) {}
     /// f |cos_i| and density of one direction; zero where the model scatters nothing, never NaN.
     fn eval_from(&self, wo: Vec3, view: View, wi: Vec3) -> Eval;
     /// What f |cos_i| is multiplied with to give its color, >= 0.

@@ -57,7 +57,7 @@ impl<M: Scatter> Source<M> for Same<M> {
     }
 
     fn adjust(&self, w: Triples<'_>, out: &mut [f32]) {
-        self.0.adjust([w.x, w.y, w.z], out);
+        M::adjust(|_| self.0, [w.x, w.y, w.z], out);
     }
 
     #[inline(always)]
@@ -80,10 +80,7 @@ impl<M: Scatter> Source<M> for Each<'_> {
     }
 
     fn adjust(&self, w: Triples<'_>, out: &mut [f32]) {
-        for (i, value) in out.iter_mut().enumerate() {
-            let model: M = self.at(i);
-            *value *= model.adjustment(w.at(i));
-        }
+        M::adjust(|lane| self.at(lane), [w.x, w.y, w.z], out);
     }
 
     #[inline(always)]

@@ -141,9 +141,9 @@ fn rough_glass_loses_nothing_from_either_side() {
     }
 }
 
-/// A Fresnel term that is not the table's is made up for within a few thousandths, and stretched facets never gain.
+/// Schlick's term is known as a dielectric's is, and stretched facets never gain.
 #[test]
-fn other_glass_nearly_loses_nothing_and_never_gains() {
+fn schlicks_glass_loses_nothing_and_stretched_glass_never_gains() {
     for alpha in [0.1, 0.4, 1.0] {
         for cos in COSINES {
             let case = Case {
@@ -154,8 +154,8 @@ fn other_glass_nearly_loses_nothing_and_never_gains() {
                 keywords: &[],
             };
             for inside in [false, true] {
-                let [mean, ..] = case.weights(view(cos), inside, 64);
-                assert!((mean - 1.0).abs() <= 1e-2, "schlick {alpha} at {cos}, inside {inside}: {mean}");
+                let [mean, ..] = case.weights(view(cos), inside, 512);
+                assert!((mean - 1.0).abs() <= 2e-3, "schlick {alpha} at {cos}, inside {inside}: {mean}");
             }
             for ratio in [2.0, 4.0, 10.0] {
                 for (closure, eta) in [("conductor_bsdf", 0.0), ("dielectric_bsdf", 1.5)] {

@@ -15,6 +15,17 @@ pub use schlick::{Schlick, eta_of_reflectance};
 use super::Params;
 use glam::Vec3;
 
+/// What a term that rises as Schlick's is made of, of a color its mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ends {
+    /// The part reflected at normal incidence.
+    pub f0: f32,
+    /// The part reflected at grazing incidence and beyond the critical angle.
+    pub f90: f32,
+    /// The exponent of its rise, >= 0.
+    pub exponent: f32,
+}
+
 /// What a boundary reflects at each angle.
 pub trait Fresnel: Copy + 'static {
     /// How many parameters it reads.
@@ -25,6 +36,11 @@ pub trait Fresnel: Copy + 'static {
     fn prepare(params: Params, from: usize) -> Self;
     /// Transmitted over incident index, > 0 when light passes.
     fn eta(&self) -> f32;
+    /// What it is made of if it rises as Schlick's.
+    #[inline(always)]
+    fn ends(&self) -> Option<Ends> {
+        None
+    }
     /// The reflected part at this cosine of incidence (its sign is ignored), 0..1 in each component.
     fn color(&self, cos: f32) -> Vec3;
     /// The reflected part where the components are equal, otherwise the largest one.

@@ -1,6 +1,6 @@
 //! Schlick's approximation with free reflectances at both ends, as the generalized Schlick closure has it.
 
-use super::{Fresnel, Params, limited};
+use super::{Ends, Fresnel, Params, limited};
 use crate::bsdf::power::power;
 use crate::bsdf::select;
 use glam::Vec3;
@@ -50,6 +50,12 @@ impl Fresnel for Schlick {
     #[inline(always)]
     fn eta(&self) -> f32 {
         self.eta
+    }
+
+    #[inline(always)]
+    fn ends(&self) -> Option<Ends> {
+        let mean = |color: Vec3| color.element_sum() * (1.0 / 3.0);
+        Some(Ends { f0: mean(self.f0), f90: mean(self.f90), exponent: self.exponent })
     }
 
     #[inline(always)]

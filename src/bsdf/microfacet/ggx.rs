@@ -57,9 +57,14 @@ impl Distribution for Ggx {
 /// Degenerate cases: grazing wo is fine, the cap is then a hemisphere.
 #[inline(always)]
 pub fn sample_visible(wo: Vec3, w: Widths, u: f32, v: f32) -> Vec3 {
+    visible_normal(wo, w, u, turn(v))
+}
+
+/// [`sample_visible`] with the azimuth's cosine and sine for the second number.
+#[inline(always)]
+pub fn visible_normal(wo: Vec3, w: Widths, u: f32, (cos, sin): (f32, f32)) -> Vec3 {
     let stretched = Vec3::new(wo.x * w.x, wo.y * w.y, wo.z);
     let view = stretched * (1.0 / stretched.dot(stretched).max(1e-30).sqrt());
-    let (cos, sin) = turn(v);
     let z = (1.0 - u) * (1.0 + view.z) - view.z;
     let s = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
     let h = Vec3::new(s * cos + view.x, s * sin + view.y, z + view.z);

@@ -36,11 +36,12 @@ pub use distribution::MIN_ALPHA;
 pub use geometry::{Facets, Geometry, Method, Sampling, Scattering};
 pub use ggx::Ggx;
 
-use super::fresnel::{Dielectric, Fresnel, limited, refracted};
+use super::fresnel::{Fresnel, limited, refracted};
 use super::{Arrivals, Choice, Eval, Params, Scatter, Side, Spread, View, select, unknown_arrivals};
 use albedo::{BLOCK, FacetTable};
 use distribution::{Distribution, Widths};
 use glam::Vec3;
+use glass::{Glass, Rows};
 
 /// The least |eta - 1| that refracts visibly; nearer to 1 light goes straight on.
 pub const MIN_ETA_DIFFERENCE: f32 = 1e-3;
@@ -101,37 +102,23 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
         self.visible.0.toward(w)
     }
 
-    /// What single scattering of both halves leaves of white light toward a direction: what each is divided by.
-    fn left(&self, w: Vec3) -> f32 {
-        let (widths, geometry, cos) = (self.visible.0, self.geometry(), w.z.abs().min(1.0));
-        let at = |width: f32| {
-            let all = glass::left(D::FACETS, geometry, width, cos, self.fresnel.eta());
-            if !F::COLORED {
-                return all;
-            }
-            // The table is a dielectric's. Another Fresnel term shares the light out in another way between the halves,
-            // each of which gets out like a dielectric's.
-            let table = FacetTable::of::<D>(geometry);
-            let glass = table.color(&Dielectric::of(self.fresnel.eta()), width, cos).x;
-            let mirror = white_part(geometry, D::FACETS, width, cos);
-            let reflected = table.color(&self.fresnel, width, cos).element_sum() * (1.0 / 3.0);
-            // What passes of a unit that is not reflected; next to nothing does near total reflection.
-            let passes = (all - glass).max(0.0) / (1.0 - glass / mirror).max(0.02);
-            reflected + passes * (1.0 - reflected / mirror).max(0.0)
-        };
+    /// The boundary of round facets of a width.
+    fn glass(&self, alpha: f32) -> Glass {
+        let Microfacet { fresnel, .. } = self;
+        Glass { facets: D::FACETS, geometry: self.geometry(), alpha, eta: fresnel.eta(), ends: fresnel.ends() }
+    }
+
+    /// What single scattering of both halves leaves of white light toward a direction: what each is divided by. `of` says what
+    /// round facets leave at a cosine.
+    fn left(&self, w: Vec3, mut of: impl FnMut(&Glass, f32) -> f32) -> f32 {
+        let (widths, cos) = (self.visible.0, w.z.abs().min(1.0));
+        let mut at = |width: f32| of(&self.glass(width), cos);
         if widths.x == widths.y {
-            return at(widths.x).clamp(1e-2, 1.0);
+            return at(widths.x);
         }
         // Of stretched facets the loss is only estimated, and no direction may gain.
         let least = at(self.width_toward(w)).max(at((widths.x * widths.y).sqrt()));
-        (0.1 + 0.9 * least).clamp(1e-2, 1.0)
-    }
-
-    /// What [`Microfacet::left`] is at all cosines, where one row of a table says it.
-    fn left_row(&self) -> Option<glass::LeftRow> {
-        let (widths, geometry) = (self.visible.0, self.geometry());
-        let one = widths.x == widths.y && !F::COLORED;
-        one.then(|| glass::LeftRow::new(D::FACETS, geometry, widths.x, self.fresnel.eta()))
+        0.1 + 0.9 * least
     }
 
     /// What this half takes from a base, given what the reflecting half does.
@@ -200,11 +187,6 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
     }
 }
 
-/// The albedo of facets that reflect all light.
-fn white_part(geometry: Geometry, facets: Facets, width: f32, cos: f32) -> f32 {
-    (1.0 - white::WhiteTable::of(facets, geometry).lost(width, cos)).max(1e-3)
-}
-
 impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D, F, REFRACT> {
     const PARAMS: usize = 2 + F::PARAMS + 1;
     const SIDE: Side = if REFRACT { Side::Other } else { Side::Same };
@@ -253,18 +235,10 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         Method::from(choice).scattering == Scattering::Multiple
     }
 
-    fn adjustment(&self, wo: Vec3) -> f32 {
-        1.0 / self.left(wo)
-    }
-
-    /// Where both widths are equal, the table is looked up in one of its axes only.
-    fn adjust(&self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
-        let row = self.left_row();
+    fn adjust(model: impl Fn(usize) -> Self, [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
+        let mut rows = Rows::default();
         for (i, value) in out.iter_mut().enumerate() {
-            *value *= match &row {
-                Some(row) => 1.0 / row.at(z[i].abs().min(1.0)).clamp(1e-2, 1.0),
-                None => self.adjustment(Vec3::new(x[i], y[i], z[i])),
-            };
+            *value /= model(i).left(Vec3::new(x[i], y[i], z[i]), |glass, cos| rows.left(glass, cos));
         }
     }
 
@@ -320,14 +294,14 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
     /// rough facets lose.
     ///
     /// Error, measured over widths 1e-3..1 and cosines 1e-4..1: reflecting, from outside 9e-4 (indices 1.02 to 2.5, metals,
-    /// Schlick), from inside glass near total reflection 0.11; grooves 5e-3; widths of ratio 2, 4 and 10 up to 0.02, 0.045 and
+    /// Schlick), from inside glass near total reflection 0.11; grooves 2e-3; widths of ratio 2, 4 and 10 up to 0.02, 0.045 and
     /// 0.07 for an index of 1.5, and 0.075, 0.175 and 0.37 for a mirror, because one width cannot stand for two.
     /// Transmitting: up to 0.33 too much at width 1.
     #[inline(always)]
     fn top_albedo(&self, w: Vec3) -> f32 {
         let table = FacetTable::of::<D>(self.geometry());
         let reflected = table.color(&self.fresnel, self.width_toward(w), w.z.abs().min(1.0));
-        let left = if self.multiple { self.left(w) } else { 1.0 };
+        let left = if self.multiple { self.left(w, Glass::left) } else { 1.0 };
         self.taken((reflected * (1.0 / left)).min(Vec3::ONE))
     }
 
@@ -350,9 +324,9 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
         let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
         let table = FacetTable::of::<D>(self.geometry());
         let widths = self.visible.0;
-        if widths.x == widths.y && !(self.multiple && F::COLORED) {
+        if widths.x == widths.y {
             let row = table.row(self.width_toward(Vec3::Z));
-            let left = if self.multiple { self.left_row() } else { None };
+            let left = self.multiple.then(|| self.glass(widths.x).row());
             let mut cos = [0.0; BLOCK];
             for first in (0..n).step_by(BLOCK) {
                 let count = BLOCK.min(n - first);
@@ -364,7 +338,7 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Scatter for Microfacet<D,
                 for l in 0..count {
                     let color = if F::COLORED { Vec3::new(x[l], y[l], z[l]) } else { Vec3::splat(x[l]) };
                     let color = color.clamp(Vec3::ZERO, Vec3::ONE);
-                    let left = left.as_ref().map_or(1.0, |row| row.at(cos[l]).clamp(1e-2, 1.0));
+                    let left = left.as_ref().map_or(1.0, |row| row.at(cos[l]));
                     out[first + l] = self.taken((color * (1.0 / left)).min(Vec3::ONE));
                 }
             }
