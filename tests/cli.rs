@@ -402,16 +402,20 @@ fn renders_stop_at_a_noise_or_a_time_and_say_what_they_reached() {
 }
 
 #[test]
-fn displacement_is_read_and_warned_of_once() {
+fn displacement_is_told_of_by_explain() {
     let place = Place::new();
     place.file("lift.osl", "displacement lift() { P += 0.1 * N; }");
-    let text = r#"<World><ShaderGroup name="skin">shader matte l1;</ShaderGroup>
-<ShaderGroup name="skin" type="displacement">shader lift l1;</ShaderGroup><Sphere center="0,0,-3" radius="1"/></World>"#;
-    place.file("lift.xml", text);
-    let (code, _, error) = place.say(&[&["render", "lift.xml", "-o", "s.png"], &SMALL[..]].concat());
-    assert_eq!((code, error.lines().count()), (0, 3), "{error}");
-    let expected = "lift.xml:2:1: warning: displacement group `skin` is not applied; its surface stays where it is\n";
-    assert!(error.starts_with(expected), "{error}");
+    // In either order.
+    let (surface, moving) = (">shader matte", r#" type="displacement">shader lift"#);
+    for [first, second] in [[surface, moving], [moving, surface]] {
+        let group = |words: &str| format!(r#"<ShaderGroup name="skin"{words} l1;</ShaderGroup>"#);
+        let text = format!(r#"<World>{}{}<Sphere center="0,0,-3" radius="1"/></World>"#, group(first), group(second));
+        place.file("lift.xml", &text);
+        let (code, out, error) = place.say(&[&["render", "lift.xml", "-o", "s.png", "--explain"], &SMALL[..]].concat());
+        assert!(code == 0 && !error.contains("displacement"), "{error}");
+        let told = "moved surfaces: material 0, as triangles";
+        assert!(format!("{out}{error}").contains(told), "{out}{error}");
+    }
 }
 
 #[test]

@@ -350,7 +350,7 @@ fn noise_by_name() {
         "",
         r#"string k = "ce"; if (u > 9) k = "perlin"; float x = noise(concat(k, "lx"), P); printf("%g\n", x);"#,
         1,
-        "Error \"test.osl:1:67: there is no noise \\\"celx\\\"\"\n0\n",
+        "Mistake \"test.osl:1:67: error: there is no noise \\\"celx\\\"\"\n0\n",
     );
 }
 

@@ -193,6 +193,9 @@ pub(super) fn rank_type(ty: &Type) -> u32 {
         Some(Base::Point) => 4,
         Some(Base::Normal) => 5,
         Some(Base::Matrix) => 6,
-        _ => 7,
+        Some(Base::String) => 7,
+        Some(Base::Closure) => 8,
+        Some(Base::Void) => 10,
+        None => 9,
     }
 }

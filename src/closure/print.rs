@@ -13,11 +13,14 @@ use std::fmt::Write;
 
 /// The text of a whole tree in one lane; empty for no closure.
 pub fn tree_text(table: &ClosureTable, tree: &Tree, lane: usize) -> String {
-    closure_text(table, tree, tree.root, lane)
+    closure_text(table, tree, tree.root, lane, |_| false)
 }
 
 /// So many terms are written, nested ones included.
 pub const MOST_TERMS: usize = 256;
+
+/// The keyword that names a leaf for a renderer's outputs.
+const LABEL: &str = "label";
 
 /// What is left to write, last one first.
 enum Task {
@@ -73,8 +76,14 @@ fn terms(tree: &Tree, root: Option<NodeId>, lane: usize) -> Vec<u64> {
     terms
 }
 
-/// The text of one closure in one lane.
-pub fn closure_text(table: &ClosureTable, tree: &Tree, root: Option<NodeId>, lane: usize) -> String {
+/// The text of one closure in one lane. Closures that are `labelled`, by name, have their label written even where none is given.
+pub fn closure_text(
+    table: &ClosureTable,
+    tree: &Tree,
+    root: Option<NodeId>,
+    lane: usize,
+    labelled: impl Fn(&str) -> bool,
+) -> String {
     let terms = terms(tree, root, lane);
     let mut out = String::new();
     let mut written = 0;
@@ -115,7 +124,7 @@ pub fn closure_text(table: &ClosureTable, tree: &Tree, root: Option<NodeId>, lan
                     open.last_mut().into_iter().for_each(|sum| out.push_str(sum.plus()));
                     let [r, g, b] = weight.map(number);
                     let _ = write!(out, "({r}, {g}, {b}) * ");
-                    leaf_tasks(table, tree, leaf, lane, &mut tasks);
+                    leaf_tasks(table, tree, leaf, lane, &labelled, &mut tasks);
                 }
             },
         }
@@ -125,7 +134,14 @@ pub fn closure_text(table: &ClosureTable, tree: &Tree, root: Option<NodeId>, lan
 }
 
 /// Queues the name and the arguments of a leaf.
-fn leaf_tasks(table: &ClosureTable, tree: &Tree, leaf: Node, lane: usize, tasks: &mut Vec<Task>) {
+fn leaf_tasks(
+    table: &ClosureTable,
+    tree: &Tree,
+    leaf: Node,
+    lane: usize,
+    labelled: &dyn Fn(&str) -> bool,
+    tasks: &mut Vec<Task>,
+) {
     let Node::Leaf { closure, first_param, param_count, first_keyword, keyword_count } = leaf else { return };
     let spec = table.get(closure);
     let params = &tree.params[first_param as usize..(first_param + param_count) as usize];
@@ -144,6 +160,11 @@ fn leaf_tasks(table: &ClosureTable, tree: &Tree, leaf: Node, lane: usize, tasks:
         comma(&mut parts);
         parts.push(Task::Text(format!("{:?}, ", spec.keywords[*at as usize].name)));
         parts.push(argument(tree, *param, lane));
+    }
+    let labels = keywords.iter().any(|(at, _)| spec.keywords[*at as usize].name == LABEL);
+    if labelled(spec.name) && !labels {
+        comma(&mut parts);
+        parts.push(Task::Text(format!("{LABEL:?}, \"\"")));
     }
     parts.push(Task::Text(")".to_owned()));
     tasks.extend(parts.into_iter().rev());

@@ -31,7 +31,13 @@ impl GroupBuilder {
             name: String::new(),
             layers: Vec::new(),
             sources: Vec::new(),
-            lower: LowerOptions { simplify: true, outputs: false, lazy: Lazy::default(), userdata_connects: false },
+            lower: LowerOptions {
+                simplify: true,
+                outputs: false,
+                position: false,
+                lazy: Lazy::default(),
+                userdata_connects: false,
+            },
             optimize: OptimizeOptions::default(),
             error: None,
         }
@@ -148,6 +154,12 @@ impl GroupBuilder {
     /// Keeps the output parameters of all layers as results.
     pub fn keep_outputs(mut self) -> Self {
         self.lower.outputs = true;
+        self
+    }
+
+    /// Keeps `P`, where shaders assign it, as a result of that name: what displacement is.
+    pub fn keep_position(mut self) -> Self {
+        self.lower.position = true;
         self
     }
 

@@ -56,6 +56,12 @@ pub trait Host: Send + Sync {
         None
     }
 
+    /// Is the label of a closure of this name written where it has none? By default no label is.
+    fn prints_label(&self, closure: &str) -> bool {
+        let _ = closure;
+        false
+    }
+
     /// Hears what one batch has said, lane by lane, and may take it; what it leaves waits in the machine for
     /// [`super::Machine::take_reports`]. Not called for a batch that says nothing.
     fn hear(&self, reports: &mut Vec<Report>) {

@@ -29,10 +29,11 @@ impl Run<'_> {
             // Of a space to itself without asking, as the compiler has it where it knows both names.
             let found = if from == to { Some(IDENTITY) } else { between(self.space(from), self.space(to)) };
             if found.is_none() && !self.idle(lane, lanes) {
-                let unknown = if self.space(from).is_none() { from } else { to };
-                let name = self.tree.strings.text(Symbol(unknown)).to_owned();
-                let message = format!("there is no space \"{name}\"");
-                self.report_once(lane, span, Mistake::Space { name }, message);
+                for unknown in [from, to].into_iter().filter(|&name| self.space(name).is_none()).collect::<Vec<_>>() {
+                    let name = self.tree.strings.text(Symbol(unknown)).to_owned();
+                    let message = format!("there is no space \"{name}\"");
+                    self.report_once(lane, span, Mistake::Space { name }, message);
+                }
             }
             for (reg, value) in dst.iter().zip(found.unwrap_or(IDENTITY)) {
                 self.regs.floats[reg.0 as usize][lane] = value;

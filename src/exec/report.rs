@@ -56,6 +56,11 @@ pub enum Mistake {
         /// The space that was asked for.
         to: String,
     },
+    /// A noise that there is not.
+    Noise {
+        /// Its name.
+        name: String,
+    },
     /// A texture that there is not.
     Texture {
         /// Why not.

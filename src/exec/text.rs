@@ -75,7 +75,9 @@ impl Run<'_> {
                 }
                 TextArg::Closure => {
                     let closure = self.closure(cut(&mut rest, 1)[0]);
-                    values.closures.push(closure_text(self.group.table(), self.tree, closure, lane));
+                    values.closures.push(closure_text(self.group.table(), self.tree, closure, lane, |name| {
+                        self.host.prints_label(name)
+                    }));
                 }
             }
         }
@@ -103,6 +105,13 @@ impl Run<'_> {
             if !self.text_of(&format, wanted, values, lane, &mut text) {
                 self.report_once(lane, span, Mistake::Other, MISFIT.to_owned());
             }
+            if to == PrintTo::UnknownNoise {
+                let column = self.regs.i(values[0]);
+                let name = if column.len() == 1 { column[0] } else { column[lane] };
+                let name = self.symbol_text(name).to_owned();
+                self.report_once(lane, span, Mistake::Noise { name }, text);
+                continue;
+            }
             let (kind, text) = match to {
                 PrintTo::Output => (ReportKind::Output, text),
                 PrintTo::File => {
@@ -111,7 +120,7 @@ impl Run<'_> {
                     (ReportKind::File(self.symbol_text(name).to_owned()), text)
                 }
                 PrintTo::Warning => (ReportKind::Warning, text.trim_end().to_owned()),
-                PrintTo::Error => (ReportKind::Error, text.trim_end().to_owned()),
+                PrintTo::Error | PrintTo::UnknownNoise => (ReportKind::Error, text.trim_end().to_owned()),
             };
             self.say(Report { kind, place: place.clone(), lane, text });
         }

@@ -219,7 +219,7 @@ impl Run<'_> {
 
 /// s, t and their slopes.
 fn flat(args: &Lane) -> ([f32; 2], [f32; 4]) {
-    ([args.f(1), args.f(2)], std::array::from_fn(|i| args.f(3 + i)))
+    ([args.f(1), args.f(2)], [args.f(3), args.f(4), args.f(5), args.f(6)])
 }
 
 /// The s and t of a direction, and their slopes by differences, which go the short way around.
@@ -243,18 +243,19 @@ fn sampled(
     how: &How,
     (n, changes): (usize, bool),
 ) -> ([f32; 4], [f32; 4], [f32; 4]) {
-    let sample = match changes {
-        true => texture.lookup(place[0], place[1], slopes, &how.lookup),
-        false => {
-            let value = texture.value(place[0], place[1], slopes, &how.lookup);
-            Sample { value, ..Sample::default() }
+    // A texture without the channel after those that are wanted covers everything.
+    let covers = how.lookup.first as usize + n >= texture.channels();
+    if !changes && how.space.is_none() {
+        let mut value = texture.value(place[0], place[1], slopes, &how.lookup);
+        if covers {
+            value[n] = 1.0;
         }
-    };
-    let Sample { mut value, ds, dt } = sample;
+        return (value, [0.0; 4], [0.0; 4]);
+    }
+    let Sample { mut value, ds, dt } = texture.lookup(place[0], place[1], slopes, &how.lookup);
     let along = |x: f32, y: f32| -> [f32; 4] { std::array::from_fn(|c| ds[c] * x + dt[c] * y) };
     let (mut dx, mut dy) = (along(slopes[0], slopes[1]), along(slopes[2], slopes[3]));
-    // A texture without the channel after those that are wanted covers everything.
-    if how.lookup.first as usize + n >= texture.channels() {
+    if covers {
         (value[n], dx[n], dy[n]) = (1.0, 0.0, 0.0);
     }
     if let Some(space) = how.space.filter(|_| n == 3) {

@@ -116,6 +116,8 @@ pub enum PrintTo {
     Warning,
     /// `error`
     Error,
+    /// Nothing of the shader's: there is no noise of the name that is the one argument.
+    UnknownNoise,
 }
 
 /// A format string and how the sources that follow group into its arguments.

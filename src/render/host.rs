@@ -89,6 +89,10 @@ impl Host for RenderHost {
     fn texture(&self, name: &str) -> Result<Arc<Texture>, String> {
         self.textures.get(name).map_err(|error| error.to_string())
     }
+
+    fn read_text(&self, name: &str) -> Option<String> {
+        self.textures.text(name)
+    }
 }
 
 /// What every renderer answers of its camera: a picture of so many pixels, the angle in degrees, what is between two planes, and

@@ -52,6 +52,7 @@ mod camera;
 mod counts;
 mod crossing;
 mod debug;
+mod displace;
 mod emission;
 mod error;
 mod explain;

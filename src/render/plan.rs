@@ -72,6 +72,8 @@ pub struct MaterialPlan {
     pub clear: bool,
     /// It scatters on meshes with smooth normals, whose terminator has a remedy.
     pub smooth: bool,
+    /// A shader moves its surfaces.
+    pub moves: bool,
     /// What it reads.
     pub needs: Needs,
 }
@@ -117,6 +119,7 @@ impl Plan {
                 holds_out: m.surface.can_hold_out(),
                 clear: m.surface.can_pass(),
                 smooth: false,
+                moves: m.displacement.is_some(),
                 needs: Needs::of(&m.surface),
             })
             .collect();
@@ -203,6 +206,11 @@ impl fmt::Display for Plan {
             let names: Vec<String> =
                 (0..self.materials.len()).filter(|i| self.materials[*i].clear).map(|i| i.to_string()).collect();
             writeln!(f, "clear surfaces: material {}, which shadow rays pass with their color", names.join(", "))?;
+        }
+        let moved: Vec<String> =
+            (0..self.materials.len()).filter(|&i| self.materials[i].moves).map(|i| i.to_string()).collect();
+        if !moved.is_empty() {
+            writeln!(f, "moved surfaces: material {}, as triangles, once before anything else", moved.join(", "))?;
         }
         let smooth: Vec<String> =
             (0..self.materials.len()).filter(|&i| self.materials[i].smooth).map(|i| i.to_string()).collect();

@@ -1,6 +1,7 @@
 //! The renderer: a world and a film that whoever drives it fills round after round, and changes in between.
 
 use super::accel::Accel;
+use super::displace::displaced;
 use super::error::RenderError;
 use super::film::Film;
 use super::image::{About, Image};
@@ -112,8 +113,11 @@ impl Renderer {
         check_camera(&scene.camera)?;
         let pool = pool(settings)?;
         let make = || {
+            let (scene, reports) = displaced(scene, settings);
             let accel = Arc::new(Accel::new(&scene.geometry));
-            World::new(accel, scene.clone(), settings.clone(), None)
+            let mut world = World::new(accel, scene, settings.clone(), None);
+            world.reports.extend(reports);
+            world
         };
         let world = pool.install(make);
         Ok(Renderer {

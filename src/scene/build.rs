@@ -157,13 +157,21 @@ impl<'c> Builder<'c> {
         }
     }
 
+    /// Keeps the steps that the element of the next primitive states.
+    fn resolution(&mut self, e: &Element) -> Result<(), SceneError> {
+        if let Some(steps) = e.number::<u32>("resolution", "a whole number")? {
+            self.geometry.resolutions.push((self.geometry.primitives.len() as u32, steps));
+        }
+        Ok(())
+    }
+
     fn sphere(&mut self, e: &Element) -> Result<(), SceneError> {
         e.check_attributes(&["center", "radius", "resolution"])?;
         let material = self.last_material(e)?;
         let center = e.required_vector("center")?;
         e.required("radius")?;
         let radius = e.number::<f32>("radius", "a number above 0")?.unwrap_or(0.0);
-        e.number::<u32>("resolution", "a whole number")?;
+        self.resolution(e)?;
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(e.bad_value("radius", "a number above 0"));
         }
@@ -177,7 +185,7 @@ impl<'c> Builder<'c> {
         let corner = e.required_vector("corner")?;
         let edge_x = e.required_vector("edge_x")?;
         let edge_y = e.required_vector("edge_y")?;
-        e.number::<u32>("resolution", "a whole number")?;
+        self.resolution(e)?;
         let shape = Shape::Quad { corner, edge_x, edge_y };
         // Edges parallel up to rounding have no normal either.
         if shape.area() <= 1e-6 * edge_x.length() * edge_y.length() {
@@ -303,12 +311,6 @@ impl<'c> Builder<'c> {
 
     /// A second group of the same name replaces the surface or the displacement of the first.
     fn add_material(&mut self, name: Option<&str>, spec: GroupSpec, group: crate::exec::Group) {
-        if usage_is_displacement(&spec) {
-            let (place, name) = (&spec.place, &spec.name);
-            let warning =
-                format!("{place}: warning: displacement group `{name}` is not applied; its surface stays where it is");
-            self.scene.warnings.push(warning);
-        }
         if let Some(&id) = name.and_then(|n| self.by_name.get(n)) {
             let material = &mut self.scene.materials[id as usize];
             match spec.usage {
@@ -322,8 +324,8 @@ impl<'c> Builder<'c> {
         }
         let material = Material {
             name: spec.name,
+            displacement: (spec.usage == Usage::Displacement).then(|| group.clone()),
             surface: group,
-            displacement: None,
             is_light: spec.is_light,
             place: spec.place,
         };
@@ -340,10 +342,6 @@ fn resolution(e: &Element) -> Result<Option<[u32; 2]>, SceneError> {
         [width, height] if numbers.iter().all(whole) => Ok(Some([width as u32, height as u32])),
         _ => Err(e.bad_value("res", what)),
     }
-}
-
-fn usage_is_displacement(spec: &GroupSpec) -> bool {
-    spec.usage == Usage::Displacement
 }
 
 fn usage_of(e: &Element) -> Result<Usage, SceneError> {

@@ -2,7 +2,7 @@
 //! along), compiles each once, binds and joins them.
 
 use super::error::{SceneError, SceneProblem};
-use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Values};
+use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
 use super::nearest::nearest;
 use super::shipped::shipped;
 use super::source::within;
@@ -144,7 +144,8 @@ impl GroupCompiler for ShaderFiles {
     }
 
     fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
-        self.finish(self.builder(spec)?, spec)
+        let builder = self.builder(spec)?;
+        self.finish(if spec.usage == Usage::Displacement { builder.keep_position() } else { builder }, spec)
     }
 }
 

@@ -6,8 +6,8 @@ use std::f32::consts::PI;
 
 /// The form of a primitive.
 ///
-/// Differs from OSL: testrender tessellates spheres and quads; here they are exact, so `resolution` is read and
-/// unused, silhouettes are round, and a sphere's area is 4 pi r^2.
+/// Differs from OSL: testrender tessellates spheres and quads; here they are exact unless a shader moves them, so silhouettes are
+/// round and a sphere's area is 4 pi r^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// A sphere; its poles are along y, u runs around them and v from +y to -y.
@@ -88,6 +88,8 @@ pub struct Geometry {
     pub normals: Vec<[Vec3; 3]>,
     /// Texture coordinates of the triangles that have them.
     pub uvs: Vec<[Vec2; 3]>,
+    /// Steps along a side, by primitive, of spheres and parallelograms whose elements say it, in their order; read where they are moved.
+    pub resolutions: Vec<(u32, u32)>,
 }
 
 impl Geometry {
@@ -96,6 +98,12 @@ impl Geometry {
         if self.primitives.len() > first {
             self.objects.push(object);
         }
+    }
+
+    /// Steps along a side that the element of a primitive states.
+    pub fn resolution(&self, primitive: u32) -> Option<u32> {
+        let at = self.resolutions.binary_search_by_key(&primitive, |(of, _)| *of).ok()?;
+        Some(self.resolutions[at].1)
     }
 
     /// Adds an object of one analytic primitive.

@@ -67,12 +67,22 @@ impl TextureFiles {
         Ok(Arc::new(texture))
     }
 
+    /// The text of a file that lies where textures do, such as a dictionary; nothing where it is none or longer than [`MOST_TEXT`].
+    pub fn text(&self, name: &str) -> Option<String> {
+        let path = self.find(name)?;
+        let short = std::fs::metadata(&path).is_ok_and(|about| about.len() <= MOST_TEXT);
+        short.then(|| std::fs::read_to_string(path).ok()).flatten()
+    }
+
     fn find(&self, name: &str) -> Option<PathBuf> {
         let here = Path::new(name);
         let beside = self.folders.iter().map(|folder| folder.join(name));
         std::iter::once(here.to_owned()).chain(beside).find(|path| !name.is_empty() && path.is_file())
     }
 }
+
+/// The most bytes of a text.
+pub const MOST_TEXT: u64 = 64 << 20;
 
 /// Half of the machine's memory where that can be told, else 4 GB.
 fn default_budget() -> u64 {

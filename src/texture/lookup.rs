@@ -9,6 +9,7 @@ use super::pyramid::Texture;
 use super::texels::Level;
 use super::wrap::Wrap;
 use crate::math::elementary::{exp, floor};
+use glam::{BVec4A, Vec4};
 
 /// How much longer than wide an ellipse may be; a longer one is made wider.
 const MOST_ASPECT: f32 = 32.0;
@@ -118,7 +119,11 @@ impl Texture {
         if !s.is_finite() || !t.is_finite() {
             return Sample { value: [how.fill; 4], ..Sample::default() };
         }
-        let ellipse = self.ellipse(slopes.map(sound), how);
+        if slopes == [0.0; 4] && how.blur == [0.0; 2] {
+            return self.at_level::<G>(s, t, (0, 1.0), how);
+        }
+        let [a, b, c, d] = slopes;
+        let ellipse = self.ellipse([sound(a), sound(b), sound(c), sound(d)], how);
         let [long, short] = ellipse.lengths;
         let short = short.max(long / MOST_ASPECT);
         let probes = (2.0 * long / short - 1.0).clamp(1.0, 2.0 * MOST_ASPECT) as u32;
@@ -130,18 +135,19 @@ impl Texture {
         let reach = 1.0 - short / long;
         let step = ellipse.major.map(|axis| axis * reach);
         let place = |i: u32| (2.0 * i as f32 + 1.0) / probes as f32 - 1.0;
-        let weight = |i: u32| {
-            let x = 0.5 * place(i) / reach;
-            exp(-2.0 * x * x)
-        };
-        let total: f32 = (0..probes).map(weight).sum();
-        let center = self.at_level::<G>(s, t, (level, part), how);
-        let mut out = center;
-        for i in 0..probes {
+        let probe = |i: u32| {
             let x = place(i);
-            let probe = self.at_level::<G>(s + x * step[0], t + x * step[1], (level, part), how);
-            out.add::<G>(weight(i) / total, &center, &probe);
+            self.at_level::<G>(s + x * step[0], t + x * step[1], (level, part), how)
+        };
+        let mut weights = bell(0.5 / reach, probes);
+        let (first, mut total) = (probe(0), weights.next().unwrap_or(1.0));
+        let mut sum = Sample::default();
+        for (i, weight) in (1..probes).zip(weights) {
+            sum.add::<G>(weight, &first, &probe(i));
+            total += weight;
         }
+        let mut out = first;
+        out.add::<G>(1.0 / total, &Sample::default(), &sum);
         out
     }
 
@@ -186,6 +192,9 @@ impl Texture {
     /// One probe between a level and the one before it.
     #[inline(always)]
     fn at_level<const G: bool>(&self, s: f32, t: f32, (level, part): (usize, f32), how: &Lookup) -> Sample {
+        // Then all but the last texels lie within the picture.
+        let folded = |x: f32, axis: usize| if self.wrap_of(axis, how) == Wrap::Periodic { x - floor(x) } else { x };
+        let (s, t) = (folded(s, 0), folded(t, 1));
         let join = |number: usize| {
             let cubic = match how.interpolation {
                 Interpolation::Cubic => true,
@@ -205,50 +214,103 @@ impl Texture {
 
     #[inline(always)]
     fn join<const G: bool>(&self, level: &Level, s: f32, t: f32, cubic: bool, how: &Lookup) -> Sample {
-        let own = self.wrap();
-        let wrap = [0, 1].map(|axis| how.wrap[axis].unwrap_or(own[axis]));
         let (width, height) = (level.width() as f32, level.height() as f32);
-        let first = how.first as usize;
-        let read = |x: i32, y: i32| {
-            let mut texel = [how.fill; 4];
-            match (wrap[0].texel(x, level.width()), wrap[1].texel(y, level.height())) {
-                (Some(x), Some(y)) => level.read(x, y, first, &mut texel),
-                _ => texel = [0.0; 4],
-            }
-            texel
-        };
         // Beyond this a float has no fraction, and a texel no number.
         let inside = |x: f32| x.clamp(-1e9, 1e9);
         let (x, y) = (inside(s * width), inside(t * height));
         if how.interpolation == Interpolation::Closest {
-            return Sample { value: read(x.floor() as i32, y.floor() as i32), ..Sample::default() };
+            let [[texel]] = self.texels(level, [floor(x) as i32, floor(y) as i32], how);
+            return Sample { value: (texel / level.unit()).to_array(), ..Sample::default() };
         }
         let (x, y) = (x - 0.5, y - 0.5);
         let (left, top) = (floor(x), floor(y));
         let (fx, fy) = (x - left, y - top);
-        let corner = (left as i32, top as i32);
-        let mut out = if cubic { joined_cubic(read, corner, fx, fy) } else { joined_linear::<G>(read, corner, fx, fy) };
-        if G {
-            out.ds.iter_mut().for_each(|x| *x *= width);
-            out.dt.iter_mut().for_each(|x| *x *= height);
+        let (left, top) = (left as i32, top as i32);
+        let [value, ds, dt] = match cubic {
+            true => joined_cubic(self, level, [left - 1, top - 1], [fx, fy], how),
+            false => joined_linear::<G>(self.texels(level, [left, top], how), fx, fy),
+        };
+        let unit = level.unit();
+        let slopes = |slope: Vec4, texels: f32| if G { (slope * (texels / unit)).to_array() } else { [0.0; 4] };
+        Sample { value: (value / unit).to_array(), ds: slopes(ds, width), dt: slopes(dt, height) }
+    }
+
+    #[inline(always)]
+    fn wrap_of(&self, axis: usize, how: &Lookup) -> Wrap {
+        how.wrap[axis].unwrap_or(self.wrap()[axis])
+    }
+
+    /// Rows of texels from a corner on, in the numbers of the level.
+    #[inline(always)]
+    fn texels<const N: usize>(&self, level: &Level, [left, top]: [i32; 2], how: &Lookup) -> [[Vec4; N]; N] {
+        let (width, height, first) = (level.width(), level.height(), how.first as usize);
+        let count = level.channels().saturating_sub(first);
+        let range = |from: i32, size: usize| from >= 0 && from as usize + N <= size;
+        if range(left, width) && range(top, height) && count > 0 {
+            let (mut columns, mut rows) = ([0; N], [0; N]);
+            for i in 0..N {
+                columns[i] = level.column(left as usize + i) + first;
+                rows[i] = level.row(top as usize + i);
+            }
+            let mut out = level.fours(rows, columns);
+            if count < 4 {
+                let (there, fill) = (known(count), Vec4::splat(how.fill * level.unit()));
+                for texel in out.as_flattened_mut() {
+                    *texel = Vec4::select(there, *texel, fill);
+                }
+            }
+            return out;
+        }
+        let column = |i: usize| self.wrap_of(0, how).texel(left.saturating_add(i as i32), width);
+        let row = |i: usize| self.wrap_of(1, how).texel(top.saturating_add(i as i32), height);
+        let (there, fill) = (known(count), Vec4::splat(how.fill * level.unit()));
+        let texel = |row: Option<usize>, column: Option<usize>| match (row, column) {
+            (Some(_), Some(_)) if count == 0 => fill,
+            (Some(row), Some(column)) => {
+                let [[texel]] = level.fours([level.row(row)], [level.column(column) + first]);
+                Vec4::select(there, texel, fill)
+            }
+            _ => Vec4::ZERO,
+        };
+        let mut out = [[Vec4::ZERO; N]; N];
+        for (y, out) in out.iter_mut().enumerate() {
+            for (x, out) in out.iter_mut().enumerate() {
+                *out = texel(row(y), column(x));
+            }
         }
         out
     }
 }
 
+/// Which of four channels there are.
 #[inline(always)]
-fn joined_linear<const G: bool>(read: impl Fn(i32, i32) -> [f32; 4], (x, y): (i32, i32), fx: f32, fy: f32) -> Sample {
-    let (a, b, c, d) = (read(x, y), read(x + 1, y), read(x, y + 1), read(x + 1, y + 1));
-    let mut out = Sample::default();
-    for i in 0..4 {
-        let (top, bottom) = (a[i] + fx * (b[i] - a[i]), c[i] + fx * (d[i] - c[i]));
-        out.value[i] = top + fy * (bottom - top);
-        if G {
-            out.ds[i] = (b[i] - a[i]) + fy * ((d[i] - c[i]) - (b[i] - a[i]));
-            out.dt[i] = bottom - top;
-        }
+fn known(count: usize) -> BVec4A {
+    BVec4A::new(count > 0, count > 1, count > 2, count > 3)
+}
+
+/// The value between four texels and its slopes a texel.
+#[inline(always)]
+fn joined_linear<const G: bool>([[a, b], [c, d]]: [[Vec4; 2]; 2], fx: f32, fy: f32) -> [Vec4; 3] {
+    let (top, bottom) = (a + fx * (b - a), c + fx * (d - c));
+    let value = top + fy * (bottom - top);
+    if !G {
+        return [value, Vec4::ZERO, Vec4::ZERO];
     }
-    out
+    [value, (b - a) + fy * ((d - c) - (b - a)), bottom - top]
+}
+
+/// exp(-2 (x scale)^2) at the middles of so many equal parts of -1..1, each from the one before.
+fn bell(scale: f32, parts: u32) -> impl Iterator<Item = f32> {
+    let step = 2.0 * scale / parts as f32;
+    let first = 0.5 * step - scale;
+    let mut weight = exp(-2.0 * first * first);
+    let mut ratio = exp(-2.0 * step * (2.0 * first + step));
+    let change = exp(-4.0 * step * step);
+    (0..parts).map(move |_| {
+        let now = weight;
+        (weight, ratio) = (weight * ratio, ratio * change);
+        now
+    })
 }
 
 /// The weights of a uniform cubic B-spline and their slopes.
@@ -262,21 +324,21 @@ fn spline(f: f32) -> [[f32; 4]; 2] {
 
 // Four by four texels are a call's worth.
 #[inline(never)]
-fn joined_cubic(read: impl Fn(i32, i32) -> [f32; 4], (x, y): (i32, i32), fx: f32, fy: f32) -> Sample {
+fn joined_cubic(of: &Texture, level: &Level, corner: [i32; 2], [fx, fy]: [f32; 2], how: &Lookup) -> [Vec4; 3] {
     let ([wx, sx], [wy, sy]) = (spline(fx), spline(fy));
+    let texels: [[Vec4; 4]; 4] = of.texels(level, corner, how);
     // Sums of differences from one texel, so that a constant stays one to the last bit.
-    let base = read(x, y);
-    let mut out = Sample { value: base, ..Sample::default() };
-    for row in 0..4 {
-        for column in 0..4 {
-            let texel = read(x + column as i32 - 1, y + row as i32 - 1);
-            for i in 0..4 {
-                let difference = texel[i] - base[i];
-                out.value[i] += wx[column] * wy[row] * difference;
-                out.ds[i] += sx[column] * wy[row] * difference;
-                out.dt[i] += wx[column] * sy[row] * difference;
-            }
+    let base = texels[1][1];
+    let [mut value, mut ds, mut dt] = [base, Vec4::ZERO, Vec4::ZERO];
+    for (row, texels) in texels.iter().enumerate() {
+        let (mut along, mut change) = (Vec4::ZERO, Vec4::ZERO);
+        for (column, texel) in texels.iter().enumerate() {
+            along += wx[column] * (*texel - base);
+            change += sx[column] * (*texel - base);
         }
+        value += wy[row] * along;
+        ds += wy[row] * change;
+        dt += sy[row] * along;
     }
-    out
+    [value, ds, dt]
 }

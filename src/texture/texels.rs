@@ -1,5 +1,7 @@
 //! One level of a texture: texels in blocks of 8 x 8, so that what lies close in the picture lies close in memory.
 
+use glam::Vec4;
+
 /// The numbers of a level, as its file has them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Texels {
@@ -11,19 +13,11 @@ pub enum Texels {
     Floats(Vec<f32>),
 }
 
-/// What each byte stands for, x / 255: a look in a table costs less than a division.
-const BYTES: [f32; 256] = {
-    let mut table = [0.0; 256];
-    let mut i = 0;
-    while i < 256 {
-        table[i] = i as f32 / 255.0;
-        i += 1;
-    }
-    table
-};
-
 /// A side of a block.
 const SIDE: usize = 8;
+
+/// Numbers after the last texel, so that four can be read where one is.
+const AFTER: usize = 3;
 
 /// One level.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +34,7 @@ impl Level {
     /// A level of rows from the top, `width * height * channels` numbers.
     pub fn of_rows(width: usize, height: usize, channels: usize, rows: &Texels) -> Self {
         let (across, down) = (width.div_ceil(SIDE), height.div_ceil(SIDE));
-        let size = across * down * SIDE * SIDE * channels;
+        let size = across * down * SIDE * SIDE * channels + AFTER;
         let empty = match rows {
             Texels::Bytes(_) => Texels::Bytes(vec![0; size]),
             Texels::Words(_) => Texels::Words(vec![0; size]),
@@ -49,7 +43,7 @@ impl Level {
         let mut level = Level { width, height, channels, across, texels: empty };
         for y in 0..height {
             for x in 0..width {
-                let (to, from) = (level.place(x, y), (y * width + x) * channels);
+                let (to, from) = (level.row(y) + level.column(x), (y * width + x) * channels);
                 let n = channels;
                 match (&mut level.texels, rows) {
                     (Texels::Bytes(to_all), Texels::Bytes(all)) => {
@@ -87,20 +81,50 @@ impl Level {
         }
     }
 
+    /// Channels.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// What a column adds to the place of a texel.
     #[inline(always)]
-    fn place(&self, x: usize, y: usize) -> usize {
-        let block = (y / SIDE) * self.across + x / SIDE;
-        (block * SIDE * SIDE + (y % SIDE) * SIDE + x % SIDE) * self.channels
+    pub fn column(&self, x: usize) -> usize {
+        ((x / SIDE) * SIDE * SIDE + x % SIDE) * self.channels
+    }
+
+    /// What a row adds to the place of a texel.
+    #[inline(always)]
+    pub fn row(&self, y: usize) -> usize {
+        ((y / SIDE) * self.across * SIDE * SIDE + (y % SIDE) * SIDE) * self.channels
+    }
+
+    /// The number that stands for 1.
+    #[inline(always)]
+    pub fn unit(&self) -> f32 {
+        match &self.texels {
+            Texels::Bytes(_) => 255.0,
+            Texels::Words(_) => 65535.0,
+            Texels::Floats(_) => 1.0,
+        }
+    }
+
+    /// Four numbers of the file from the sum of each row and column on, in [`Level::unit`]; beyond a texel's last channel they are of others.
+    #[inline(always)]
+    pub fn fours<const N: usize>(&self, rows: [usize; N], columns: [usize; N]) -> [[Vec4; N]; N] {
+        match &self.texels {
+            Texels::Bytes(all) => grid(rows, columns, |at| four(all, at, f32::from)),
+            Texels::Words(all) => grid(rows, columns, |at| four(all, at, f32::from)),
+            Texels::Floats(all) => grid(rows, columns, |at| four(all, at, |x| x)),
+        }
     }
 
     /// Up to four channels from `first` on of a texel inside the level; those that there are not stay as they are.
     #[inline(always)]
     pub fn read(&self, x: usize, y: usize, first: usize, out: &mut [f32; 4]) {
-        let (from, count) = (self.place(x, y) + first, self.channels.saturating_sub(first).min(4));
-        match &self.texels {
-            Texels::Bytes(all) => take(all, from, count, |x| BYTES[usize::from(x)], out),
-            Texels::Words(all) => take(all, from, count, |x| f32::from(x) / 65535.0, out),
-            Texels::Floats(all) => take(all, from, count, |x| x, out),
+        let count = self.channels.saturating_sub(first).min(4);
+        if count > 0 {
+            let [[numbers]] = self.fours([self.row(y)], [self.column(x) + first]);
+            out[..count].copy_from_slice(&(numbers / self.unit()).to_array()[..count]);
         }
     }
 
@@ -143,14 +167,23 @@ impl Level {
     }
 }
 
-/// Takes so many numbers, in one step where there are four, as a loop of unknown length costs more than it reads.
+/// A value for each row and column; written out, because the array functions of the standard library are not inlined here.
 #[inline(always)]
-fn take<T: Copy>(all: &[T], from: usize, count: usize, number: impl Fn(T) -> f32, out: &mut [f32; 4]) {
-    match (all.get(from..).and_then(<[T]>::first_chunk::<4>), count) {
-        (Some(four), 4) => *out = four.map(number),
-        (Some(four), 3) => (out[0], out[1], out[2]) = (number(four[0]), number(four[1]), number(four[2])),
-        (_, count) => out.iter_mut().zip(&all[from..from + count]).for_each(|(out, &x)| *out = number(x)),
+fn grid<const N: usize>(rows: [usize; N], columns: [usize; N], read: impl Fn(usize) -> Vec4) -> [[Vec4; N]; N] {
+    let mut out = [[Vec4::ZERO; N]; N];
+    for (out, row) in out.iter_mut().zip(rows) {
+        for (out, column) in out.iter_mut().zip(columns) {
+            *out = read(row + column);
+        }
     }
+    out
+}
+
+/// Four numbers in one step, as a loop of unknown length costs more than it reads.
+#[inline(always)]
+fn four<T: Copy>(all: &[T], from: usize, number: impl Fn(T) -> f32) -> Vec4 {
+    let four = all.get(from..).and_then(<[T]>::first_chunk::<4>);
+    four.map_or(Vec4::ZERO, |&[x, y, z, w]| Vec4::new(number(x), number(y), number(z), number(w)))
 }
 
 /// The texels that one of a smaller level covers, with their parts of it.

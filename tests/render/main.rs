@@ -5,6 +5,7 @@ mod asking;
 mod clear;
 mod cloth;
 mod determinism;
+mod displace;
 mod emitters;
 mod exact;
 mod files;

@@ -7,7 +7,7 @@ use crate::exec::{Attribute, AttributeAnswer, AttributeRequest, Host, Points, Tr
 use crate::ops::matrix::{IDENTITY, Matrix, inverse, multiply};
 use crate::render::camera_attributes;
 use crate::scene::{ParamValue, Values};
-use crate::texture::{Texture, TextureFiles};
+use crate::texture::{Texture, TextureError, TextureFiles};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -114,11 +114,20 @@ impl Host for PatchHost {
     }
 
     fn texture(&self, name: &str) -> Result<Arc<Texture>, String> {
-        self.textures.get(name).map_err(|error| error.to_string())
+        self.textures.get(name).map_err(|error| match error {
+            // In the words of OpenImageIO.
+            TextureError::NotFound { name } => format!("Could not open file: {name}: No such file or directory"),
+            other => other.to_string(),
+        })
     }
 
     fn read_text(&self, name: &str) -> Option<String> {
-        std::fs::read_to_string(name).ok()
+        self.textures.text(name)
+    }
+
+    /// Those of OSL's testshade that have a label.
+    fn prints_label(&self, closure: &str) -> bool {
+        matches!(closure, "diffuse" | "phong")
     }
 
     fn attribute(&self, asked: &AttributeRequest<'_>, answer: &mut AttributeAnswer<'_>) {

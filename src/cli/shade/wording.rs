@@ -29,6 +29,10 @@ fn words(mistake: &Mistake, report: &Report, group: &str) -> String {
         ),
         Mistake::Space { name } => format!("Unknown transformation \"{name}\""),
         Mistake::ColorSpace { from, to } => format!("Unknown color space transformation \"{from}\" -> \"{to}\""),
+        Mistake::Noise { name } => {
+            format!("noise type \"{name}\" is unknown, called from ({})", at(place))
+        }
+        Mistake::Texture { reason } => format!("[RendererServices::texture] {reason}"),
         Mistake::Message { name, fault, first } => {
             let (before, here) = (at(first), at(place));
             match fault {

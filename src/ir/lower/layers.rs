@@ -15,10 +15,10 @@ use super::state::{Bound, Frame, Lower};
 use super::value::Value;
 use crate::check::typed::{Argument, Expr, ExprKind, Place, Shader, ShaderParam, Stmt, VarId};
 use crate::ir::build::Builder;
-use crate::ir::program::{Const, Node, Program, Reg};
+use crate::ir::program::{Const, Node, Output, OutputValue, Program, Reg};
 use crate::lang::globals::Global;
 use crate::lang::path::root;
-use crate::lang::types::Type;
+use crate::lang::types::{Base, Type};
 use std::rc::Rc;
 use velour_grammar::ast::BinaryOp;
 
@@ -44,6 +44,11 @@ pub fn lower(layers: &[Layer], group_name: &str, options: LowerOptions) -> Progr
         Some((_, Value::Regs(regs))) => regs[0],
         _ => shared.only_closure(last).unwrap_or(none),
     };
+    let p = shared.globals.iter().find(|(global, _)| options.position && *global == Global::P);
+    if let (Some((_, Value::Regs(regs))), Some(layer)) = (p, layers.last()) {
+        let (layer, value) = (layer.name.clone(), OutputValue::Regs(regs.clone()));
+        shared.outputs.push(Output { layer, name: "P".to_owned(), ty: Type::of(Base::Point), value });
+    }
     let mut program = builder.finish();
     program.result = Some(result);
     program.outputs = shared.outputs;

@@ -113,7 +113,7 @@ impl Lower<'_> {
         let Some((&kind, others)) = kinds.split_first() else {
             let text = "there is no noise \"%s\"".to_owned();
             let format = TextFormat { text, computed: false, args: vec![TextArg::Strings(1)] };
-            self.b.call(Routine::Print(PrintTo::Error, format), vec![name], self.span);
+            self.b.call(Routine::Print(PrintTo::UnknownNoise, format), vec![name], self.span);
             return;
         };
         if noise.periodic && !kind.repeats() {

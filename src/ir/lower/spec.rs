@@ -34,6 +34,8 @@ pub struct LowerOptions {
     pub simplify: bool,
     /// Keep the output parameters of every layer as results.
     pub outputs: bool,
+    /// Keep `P`, where it is assigned, as a result of that name.
+    pub position: bool,
     /// Which layers wait until somebody reads what they put out.
     pub lazy: Lazy,
     /// Count parameters that userdata may fill as connected.

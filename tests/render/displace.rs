@@ -1,0 +1,116 @@
+//! Surfaces that shaders move, seen by the renderer.
+
+use super::materials::{picture_with, scene_with};
+use std::sync::Arc;
+use velour::render::{Image, Renderer, Settings, Silent, render};
+use velour::scene::{Scene, ShaderFiles};
+
+const GREY: &str = "surface grey() { Ci = .5 * diffuse(N); }";
+const WHITE: &str = "surface white() { Ci = background(); }";
+
+fn scene(body: &str, displacement: &str) -> String {
+    let groups = match displacement {
+        "" => "",
+        _ => r#"<ShaderGroup name="it" type="displacement">shader move d1;</ShaderGroup>"#,
+    };
+    format!(
+        r#"<World><Camera eye="0,0,4" look_at="0,0,0" fov="60"/>
+        <ShaderGroup name="it">shader grey l1;</ShaderGroup>{groups}{body}
+        <ShaderGroup>shader white l1;</ShaderGroup><Background/></World>"#
+    )
+}
+
+fn picture(body: &str, displacement: &str) -> Image {
+    let xml = scene(body, displacement);
+    let mut shaders = vec![GREY, WHITE];
+    shaders.extend((!displacement.is_empty()).then_some(displacement));
+    picture_with(&xml, &shaders, |s| s.samples = 64)
+}
+
+/// The root mean square of the difference of two pictures.
+fn difference(a: &Image, b: &Image) -> f64 {
+    let squares = a.pixels.iter().zip(&b.pixels).map(|(a, b)| f64::from(a - b).powi(2));
+    (squares.sum::<f64>() / a.pixels.len() as f64).sqrt()
+}
+
+#[test]
+fn a_ball_that_is_blown_up_is_a_larger_ball() {
+    let small = r#"<Sphere center=".2,0,0" radius=".8" resolution="128"/>"#;
+    let large = picture(r#"<Sphere center=".2,0,0" radius="1.2"/>"#, "");
+    for moves in ["P += 0.4 * N;", "displace(0.4);", "displace(\"world\", 0.4);", "P += vector(0.4 * N);"] {
+        let moved = picture(small, &format!("displacement move() {{ {moves} }}"));
+        let unmoved = picture(small, "displacement move() { N = -N; }");
+        assert!(difference(&moved, &large) < 4e-3, "{moves}: {}", difference(&moved, &large));
+        assert!(difference(&unmoved, &large) > 0.1, "a shader that leaves P moves nothing");
+    }
+}
+
+#[test]
+fn a_board_that_is_moved_is_a_board_elsewhere() {
+    let board = |z: &str| format!(r#"<Quad corner="-1,-1,{z}" edge_x="2,0,0" edge_y="0,2,0" resolution="7"/>"#);
+    let moved = picture(&board("0"), "displacement move(float by = .5) { P[2] += by; }");
+    let there = picture(&board(".5"), "");
+    assert!(difference(&moved, &there) < 3e-3, "{}", difference(&moved, &there));
+}
+
+/// A slope raised over a board turns its normals, and its area is that of the slope.
+#[test]
+fn normals_and_areas_are_those_of_the_moved_surface() {
+    let shaders = ["surface grey() { Ci = emission() * color(N[1] / N[2], surfacearea(), 0); }", WHITE];
+    let board = r#"<Quad corner="-1,-1,0" edge_x="2,0,0" edge_y="0,2,0" resolution="16"/>"#;
+    let xml = scene(board, "move");
+    let moves = "displacement move() { P[2] += .25 * P[1] + .1 * u; }";
+    let image = picture_with(&xml, &[shaders[0], shaders[1], moves], |s| s.samples = 4);
+    let [slope, area, _] = image.pixel(32, 32)[..3] else { panic!("three channels") };
+    let exact = 4.0 * (1.0f32 + 0.25 * 0.25 + 0.05 * 0.05).sqrt();
+    assert!((slope + 0.25).abs() < 1e-4, "{slope}");
+    assert!((area - exact).abs() < 1e-3, "{area} against {exact}");
+}
+
+/// A closed mesh, each face with corners of its own and no normals, moved face by face in other directions.
+#[test]
+fn no_crack_opens_between_faces() {
+    let folder = tempfile::tempdir().unwrap();
+    let face = |signs: u32| {
+        let sign = |bit: u32| if signs >> bit & 1 == 0 { 2.0 } else { -2.0 };
+        format!("v {} 0 0\nv 0 {} 0\nv 0 0 {}\nf -3 -2 -1\n", sign(0), sign(1), sign(2))
+    };
+    let write = |name: String, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("all.obj".to_owned(), (0..8).map(face).collect());
+    (0..8).for_each(|number| write(format!("{number}.obj"), face(number)));
+    let background_seen = |models: &[String], moves: &str| {
+        let body: String = models.iter().map(|name| format!(r#"<Model filename="{name}.obj"/>"#)).collect();
+        let xml = scene(&body, moves).replace("0,0,4", "0.1,0.05,0.02").replace("60", "120");
+        let files = ["surface grey() { Ci = 0; }", WHITE, moves].into_iter();
+        let files = files.fold(ShaderFiles::default(), |files, text| files.with_shader(text).unwrap());
+        let scene = Scene::load(&xml, &[folder.path().to_owned()], &files).unwrap_or_else(|e| panic!("{e}"));
+        let settings = Settings { width: 96, height: 96, samples: 16, ..Settings::default() };
+        render(&scene, &settings, &Silent).unwrap().mean()[0]
+    };
+    let outward = "displacement move() { P += .3 * Ng * sign(dot(P, Ng)) + .1 * noise(\"perlin\", 7 * P); }";
+    assert_eq!(background_seen(&["all".to_owned()], outward), 0.0);
+    let apart: Vec<String> = (0..8).map(|number| number.to_string()).collect();
+    assert!(background_seen(&apart, outward) > 0.01, "elements of their own part");
+}
+
+#[test]
+fn what_is_not_finite_stays_and_is_told() {
+    let ball = r#"<Sphere center="0,0,0" radius="1" resolution="8"/>"#;
+    let image = picture(ball, "displacement move() { P += N * log(-1 + (u > .5)) / 0; if (u > .5) P = P / (P - P); }");
+    assert!(image.pixels.iter().all(|x| x.is_finite()));
+    let image = picture(ball, "displacement move() { P *= 1e30; P *= 1e30; }");
+    let told: Vec<String> = image.about.reports.iter().map(ToString::to_string).collect();
+    assert!(told.iter().any(|text| text.contains("sends") && text.contains("corners nowhere")), "{told:?}");
+}
+
+#[test]
+fn a_scene_that_moves_nothing_keeps_its_geometry() {
+    let ball = r#"<Sphere center="0,0,0" radius="1"/>"#;
+    let settings = Settings { width: 8, height: 8, ..Settings::default() };
+    for (moves, same) in [("", true), ("displacement move() { P += N; }", false)] {
+        let shaders: Vec<&str> = [GREY, WHITE, moves].into_iter().filter(|text| !text.is_empty()).collect();
+        let scene = scene_with(&scene(ball, moves), &shaders);
+        let renderer = Renderer::new(&scene, &settings).unwrap();
+        assert_eq!(Arc::ptr_eq(&renderer.scene().geometry, &scene.geometry), same);
+    }
+}
