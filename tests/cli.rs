@@ -402,23 +402,6 @@ fn renders_stop_at_a_noise_or_a_time_and_say_what_they_reached() {
 }
 
 #[test]
-fn displacement_is_told_of_by_explain() {
-    let place = Place::new();
-    place.file("lift.osl", "displacement lift() { P += 0.1 * N; }");
-    // In either order.
-    let (surface, moving) = (">shader matte", r#" type="displacement">shader lift"#);
-    for [first, second] in [[surface, moving], [moving, surface]] {
-        let group = |words: &str| format!(r#"<ShaderGroup name="skin"{words} l1;</ShaderGroup>"#);
-        let text = format!(r#"<World>{}{}<Sphere center="0,0,-3" radius="1"/></World>"#, group(first), group(second));
-        place.file("lift.xml", &text);
-        let (code, out, error) = place.say(&[&["render", "lift.xml", "-o", "s.png", "--explain"], &SMALL[..]].concat());
-        assert!(code == 0 && !error.contains("displacement"), "{error}");
-        let told = "moved surfaces: material 0, as triangles";
-        assert!(format!("{out}{error}").contains(told), "{out}{error}");
-    }
-}
-
-#[test]
 fn a_first_scene_is_written_renders_and_is_never_written_over() {
     let place = Place::new();
     let (code, out, error) = place.say(&["new", "first"]);

@@ -7,7 +7,9 @@ use crate::ir::op::{AttributeType, TextureCall};
 use crate::ir::program::Reg;
 use crate::lang::symbols::Symbol;
 use crate::ops::color::{ColorSpace, transformc};
-use crate::texture::{Interpolation, Lookup, Sample, Texture, Up, Wrap, is_tiled, latitude_longitude, tile_name};
+use crate::texture::{
+    Interpolation, Lookup, Sample, Texture, Up, Wrap, is_tiled, latitude_longitude, tile_name, values,
+};
 use velour_grammar::Span;
 
 /// Where the parts of a call's sources begin.
@@ -95,10 +97,46 @@ impl Run<'_> {
         How { lookup, missing, space: ColorSpace::from_name(space).filter(|_| !space.is_empty()) }
     }
 
+    /// Looks all lanes up at once, where they ask one texture, in one way, for nothing but the value; false where they do not.
+    fn texture_alike(&mut self, call: TextureCall, dst: &[Reg], src: &[Reg]) -> bool {
+        let Some(first) = self.s.mask[..self.n].iter().position(|lit| *lit != 0) else { return true };
+        if call.environment || call.slopes || !self.uniform(src[0]) {
+            return false;
+        }
+        let args = Lane { run: self, src, lane: first };
+        let (symbol, how) = (args.i(0), self.how(call, src, first));
+        if how.space.is_some() || is_tiled(self.tree.strings.text(Symbol(symbol))) {
+            return false;
+        }
+        let Ok(texture) = self.texture_at(symbol, &mut 0.0, &mut 0.0) else { return false };
+        let (n, count) = (call.channels as usize, call.channels as usize + 1);
+        let mut out: [Vec<f32>; 4] = Default::default();
+        for (column, reg) in out.iter_mut().zip(&dst[..count]) {
+            *column = std::mem::take(&mut self.regs.floats[reg.0 as usize]);
+        }
+        let places = [1, 2, 3, 4, 5, 6].map(|k| self.regs.f(src[k]));
+        values(&texture, &places, &how.lookup, &self.s.mask[..self.n], &mut out[..count]);
+        if how.lookup.first as usize + n >= texture.channels() {
+            out[n].iter_mut().zip(&self.s.mask).filter(|(_, lit)| **lit != 0).for_each(|(value, _)| *value = 1.0);
+        }
+        for (column, reg) in out.iter_mut().zip(&dst[..count]) {
+            self.regs.floats[reg.0 as usize] = std::mem::take(column);
+        }
+        for (reg, value) in dst[dst.len() - 2..].iter().zip([1, 0]) {
+            // The empty text is symbol 0.
+            let column = &mut self.regs.ints[reg.0 as usize];
+            column.iter_mut().zip(&self.s.mask).filter(|(_, lit)| **lit != 0).for_each(|(out, _)| *out = value);
+        }
+        true
+    }
+
     pub(super) fn texture(&mut self, call: TextureCall, dst: &[Reg], src: &[Reg], span: Span) {
         let n = call.channels as usize;
         let at = Layout::of(call);
         let alike = src[at.floats..].iter().all(|&reg| self.uniform(reg));
+        if alike && self.texture_alike(call, dst, src) {
+            return;
+        }
         let mut shared = None;
         // Most batches look up one file: it is asked for once.
         let (mut latest, mut tiled): (Option<(i32, Found)>, bool) = (None, false);

@@ -8,6 +8,7 @@
 use super::pyramid::Texture;
 use super::texels::Level;
 use super::wrap::Wrap;
+use crate::lanes;
 use crate::math::elementary::{exp, floor};
 use glam::{BVec4A, Vec4};
 
@@ -101,6 +102,23 @@ struct Ellipse {
     lengths: [f32; 2],
 }
 
+lanes! {
+    /// [`Texture::value`] of all lanes that are lit: columns of s, t and their slopes, each of all lanes or of one number for all; a column
+    /// a channel.
+    pub fn values(texture: &Texture, places: &[&[f32]; 6], how: &Lookup, lit: &[i32], out: &mut [Vec<f32>]) {
+        for (lane, lit) in lit.iter().enumerate() {
+            if *lit == 0 {
+                continue;
+            }
+            let at = |k: usize| if places[k].len() == 1 { places[k][0] } else { places[k][lane] };
+            let value = texture.look_up::<false>(at(0), at(1), [at(2), at(3), at(4), at(5)], how).value;
+            for (out, value) in out.iter_mut().zip(value) {
+                out[lane] = value;
+            }
+        }
+    }
+}
+
 impl Texture {
     /// Looks up at (s, t), with t = 0 at the top; `slopes` are ds/dx, dt/dx, ds/dy, dt/dy of a pixel. Coordinates that are not finite give the
     /// fill.
@@ -134,16 +152,15 @@ impl Texture {
         // The outermost probes end where the ellipse does.
         let reach = 1.0 - short / long;
         let step = ellipse.major.map(|axis| axis * reach);
-        let place = |i: u32| (2.0 * i as f32 + 1.0) / probes as f32 - 1.0;
-        let probe = |i: u32| {
-            let x = place(i);
-            self.at_level::<G>(s + x * step[0], t + x * step[1], (level, part), how)
-        };
-        let mut weights = bell(0.5 / reach, probes);
-        let (first, mut total) = (probe(0), weights.next().unwrap_or(1.0));
-        let mut sum = Sample::default();
-        for (i, weight) in (1..probes).zip(weights) {
-            sum.add::<G>(weight, &first, &probe(i));
+        let mut bell = Bell::new(0.5 / reach, probes);
+        let (mut first, mut sum, mut total) = (Sample::default(), Sample::default(), 0.0);
+        for i in 0..probes {
+            let x = (2.0 * i as f32 + 1.0) / probes as f32 - 1.0;
+            let probe = self.at_level::<G>(s + x * step[0], t + x * step[1], (level, part), how);
+            // Sums of differences from one probe, so that a constant stays one to the last bit.
+            first = if i == 0 { probe } else { first };
+            let weight = bell.next();
+            sum.add::<G>(weight, &first, &probe);
             total += weight;
         }
         let mut out = first;
@@ -152,6 +169,7 @@ impl Texture {
     }
 
     /// The coarser of the two levels between whose texels a half axis lies, and its part: all of it where the half axis is a texel of it.
+    #[inline(always)]
     fn level_of(&self, half_axis: f32) -> (usize, f32) {
         let last = self.level_count() - 1;
         let mut texels = half_axis;
@@ -166,6 +184,7 @@ impl Texture {
 
     /// The half axes of the ellipse: the singular values of the matrix of slopes, in texels. Blur adds to them as it does to the axes of a
     /// box that it is seen along.
+    #[inline(always)]
     fn ellipse(&self, slopes: [f32; 4], how: &Lookup) -> Ellipse {
         let size = self.size().map(|side| side as f32);
         let [dsdx, dtdx, dsdy, dtdy] = slopes;
@@ -195,21 +214,25 @@ impl Texture {
         // Then all but the last texels lie within the picture.
         let folded = |x: f32, axis: usize| if self.wrap_of(axis, how) == Wrap::Periodic { x - floor(x) } else { x };
         let (s, t) = (folded(s, 0), folded(t, 1));
-        let join = |number: usize| {
-            let cubic = match how.interpolation {
-                Interpolation::Cubic => true,
-                Interpolation::Smart => number == 0,
-                Interpolation::Closest | Interpolation::Linear => false,
-            };
-            self.join::<G>(self.level(number), s, t, cubic, how)
-        };
+        // No closures: they would not be compiled for the instruction set of their caller.
         if part >= 1.0 || level == 0 {
-            return join(level);
+            return self.in_level::<G>(level, s, t, how);
         }
-        let (fine, coarse) = (join(level - 1), join(level));
+        let (fine, coarse) = (self.in_level::<G>(level - 1, s, t, how), self.in_level::<G>(level, s, t, how));
         let mut out = fine;
         out.add::<G>(part, &fine, &coarse);
         out
+    }
+
+    /// One level, bicubic in the finest one where that is wanted.
+    #[inline(always)]
+    fn in_level<const G: bool>(&self, number: usize, s: f32, t: f32, how: &Lookup) -> Sample {
+        let cubic = match how.interpolation {
+            Interpolation::Cubic => true,
+            Interpolation::Smart => number == 0,
+            Interpolation::Closest | Interpolation::Linear => false,
+        };
+        self.join::<G>(self.level(number), s, t, cubic, how)
     }
 
     #[inline(always)]
@@ -300,20 +323,34 @@ fn joined_linear<const G: bool>([[a, b], [c, d]]: [[Vec4; 2]; 2], fx: f32, fy: f
 }
 
 /// exp(-2 (x scale)^2) at the middles of so many equal parts of -1..1, each from the one before.
-fn bell(scale: f32, parts: u32) -> impl Iterator<Item = f32> {
-    let step = 2.0 * scale / parts as f32;
-    let first = 0.5 * step - scale;
-    let mut weight = exp(-2.0 * first * first);
-    let mut ratio = exp(-2.0 * step * (2.0 * first + step));
-    let change = exp(-4.0 * step * step);
-    (0..parts).map(move |_| {
-        let now = weight;
-        (weight, ratio) = (weight * ratio, ratio * change);
+struct Bell {
+    weight: f32,
+    ratio: f32,
+    change: f32,
+}
+
+impl Bell {
+    #[inline(always)]
+    fn new(scale: f32, parts: u32) -> Self {
+        let step = 2.0 * scale / parts as f32;
+        let first = 0.5 * step - scale;
+        Bell {
+            weight: exp(-2.0 * first * first),
+            ratio: exp(-2.0 * step * (2.0 * first + step)),
+            change: exp(-4.0 * step * step),
+        }
+    }
+
+    #[inline(always)]
+    fn next(&mut self) -> f32 {
+        let now = self.weight;
+        (self.weight, self.ratio) = (self.weight * self.ratio, self.ratio * self.change);
         now
-    })
+    }
 }
 
 /// The weights of a uniform cubic B-spline and their slopes.
+#[inline(always)]
 fn spline(f: f32) -> [[f32; 4]; 2] {
     let g = 1.0 - f;
     let (f2, g2) = (f * f, g * g);

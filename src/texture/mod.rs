@@ -16,7 +16,7 @@ pub use environment::{Up, latitude_longitude};
 pub use file::{TextureError, read};
 #[cfg(feature = "render")]
 pub use files::TextureFiles;
-pub use lookup::{Interpolation, Lookup, Sample};
+pub use lookup::{Interpolation, Lookup, Sample, values};
 pub use pyramid::Texture;
 pub use texels::{Level, Texels};
 pub use udim::{is_tiled, tile_name};

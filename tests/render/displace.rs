@@ -112,5 +112,18 @@ fn a_scene_that_moves_nothing_keeps_its_geometry() {
         let scene = scene_with(&scene(ball, moves), &shaders);
         let renderer = Renderer::new(&scene, &settings).unwrap();
         assert_eq!(Arc::ptr_eq(&renderer.scene().geometry, &scene.geometry), same);
+        assert_eq!(renderer.plan().to_string().contains("moved surfaces: material 0, as triangles"), !same);
     }
+}
+
+#[test]
+fn a_group_that_moves_may_come_before_the_one_that_shades() {
+    let ball = r#"<Sphere center="0,0,0" radius=".5"/>"#;
+    let moves = "displacement move() { P += .5 * N; }";
+    let after = scene(ball, moves);
+    let (surface, moving) = (">shader grey", r#" type="displacement">shader move"#);
+    let before = after.replace(surface, ">x").replace(moving, surface).replace(">x", moving);
+    assert_ne!(after, before);
+    let [after, before] = [after, before].map(|xml| picture_with(&xml, &[GREY, WHITE, moves], |_| ()));
+    assert!(difference(&after, &before) == 0.0 && after.mean()[0] < 0.95);
 }
