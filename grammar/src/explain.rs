@@ -288,6 +288,7 @@ impl Failure {
             Found::Sym(_) if self.has("name") && !self.has("int literal") && Sym::keyword(&text).is_some() => {
                 format!("`{text}` is a keyword and cannot be a name: choose another one")
             }
+            _ if self.after_elseif(sources) => "OSL has no such word: write `else if`".into(),
             _ if self.has("int literal") && !self.has("(") => {
                 "the length of an array is an integer literal (a macro may stand for it)".into()
             }
@@ -302,6 +303,14 @@ impl Failure {
             _ if self.has("name") => "a declaration is written `type name`".into(),
             _ => "look at what stands just before it".into(),
         }
+    }
+
+    /// Does the statement begin with what other languages write for `else if`?
+    fn after_elseif(&self, sources: &Sources) -> bool {
+        let before = (0..self.span.first).rev().filter_map(|at| sources.token(at)).filter(|token| !token.aside);
+        let mut words =
+            before.map(|token| sources.spelling(token.place)).take_while(|word| !matches!(*word, ";" | "{" | "}"));
+        words.any(|word| matches!(word, "elseif" | "elif" | "elsif"))
     }
 }
 

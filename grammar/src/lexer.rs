@@ -100,14 +100,16 @@ impl<'s> Lexer<'s, '_> {
     fn stray(&mut self, token: PpToken, span: Span) -> Token<'s> {
         let text = self.text(token);
         let help = match text {
-            "'" => "strings are written with double quotes",
+            _ if text.starts_with('\'') => "strings are written with double quotes",
             "#" => "a directive must be the first thing on its line",
             "##" => "`##` has a meaning only inside #define",
             "@" | "$" | "`" | "\\" => "remove it",
             "..." => "OSL has no functions with a variable number of arguments",
             _ => "outside of strings and comments only ASCII is allowed",
         };
-        let message = format!("`{}` has no meaning in OSL", text.escape_debug());
+        let shown =
+            text.chars().map(|c| if matches!(c, '\'' | '\\') { c.to_string() } else { c.escape_debug().to_string() });
+        let message = format!("`{}` has no meaning in OSL", shown.collect::<String>());
         self.diagnostics.push(Diagnostic::error("E0201", span, message).label("not expected anywhere").help(help));
         Token::Error
     }

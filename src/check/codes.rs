@@ -35,6 +35,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("W0504", "a function defined twice"),
     ("W0510", "a format string that is computed"),
     ("W0511", "an unknown name of a noise"),
+    ("W0512", "an assignment as a condition"),
     ("W0509", "an assignment to a parameter that is not `output`, or to a global that is usually only read"),
     ("W0507", "a variable or parameter that is never read"),
     ("W0508", "a variable that is never written"),

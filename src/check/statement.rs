@@ -162,6 +162,10 @@ impl Checker<'_> {
 
     /// A condition: any base type, turned into an int that is not zero when true.
     pub fn check_condition(&mut self, expr: &ast::Expr) -> Expr {
+        if let ast::ExprKind::Assign(None, ..) = expr.kind {
+            let diagnostic = Diagnostic::warning("W0512", expr.span, "an assignment is the condition");
+            self.report(diagnostic.label("its new value is tested").help("compare with `==`"));
+        }
         let expr = self.check_expr(expr, None);
         self.truth(expr)
     }

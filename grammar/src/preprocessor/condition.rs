@@ -159,11 +159,37 @@ impl Reader<'_, '_> {
                 Some(value) => Ok(value),
                 None => Err((Some(token), "this is not an integer".into(), "#if counts with integers only")),
             },
+            Kind::Character => match character(self.state.text(token)) {
+                Some(code) => Ok(code),
+                None => Err((Some(token), "this is no character".into(), "write one as 'a' or '\\n'")),
+            },
             // A name that is no macro counts as 0.
             Kind::Name => Ok(0),
             _ => Err((Some(token), format!("`{}` does not belong in #if", self.state.text(token)), help)),
         }
     }
+}
+
+/// The code of a character between single quotes.
+fn character(text: &str) -> Option<i64> {
+    let mut inner = text.strip_prefix('\'')?.strip_suffix('\'')?.chars();
+    let code = match (inner.next()?, inner.next()) {
+        ('\\', Some(escaped)) => match escaped {
+            'n' => '\n',
+            't' => '\t',
+            'r' => '\r',
+            '0' => '\0',
+            'a' => '\u{7}',
+            'b' => '\u{8}',
+            'f' => '\u{c}',
+            'v' => '\u{b}',
+            '\\' | '\'' | '"' | '?' => escaped,
+            _ => return None,
+        },
+        (plain, None) => plain,
+        _ => return None,
+    };
+    Some(i64::from(u32::from(code)))
 }
 
 /// How tightly an operator binds; 0 for what is none.

@@ -10,7 +10,7 @@ use logos::{Filter, Lexer, Logos};
 /// The kinds of preprocessing token. Keywords are names here: macros may be called like keywords.
 #[derive(Logos, Clone, Copy, Debug, PartialEq, Eq)]
 #[logos(skip r"([ \t\r\x0b\x0c\u{feff}]|\\\r?\n)+")]
-#[logos(skip(r"//([^\\\n]|\\\r?\n|\\[^\r\n])*", allow_greedy = true))]
+#[logos(skip(r"//([^\\\n]|\\\r?\n|\\[^\r\n])*\\?", allow_greedy = true))]
 #[allow(missing_docs)] // the spelling beside each variant says it all
 pub(crate) enum Kind {
     #[token("\n")]
@@ -119,6 +119,9 @@ pub(crate) enum Kind {
     ShlAssign,
     #[token(">>=")]
     ShrAssign,
+    /// A character of C, which conditions count as its code.
+    #[regex(r"'([^'\\\r\n]|\\[^\r\n])'")]
+    Character,
     /// A character that starts no token.
     Stray,
     /// Text for which a message has been reported.
