@@ -172,6 +172,8 @@ fn dictionaries_are_searched_by_path() {
     assert_eq!(many, "!a batch reads more than 1024 dictionaries|-1|");
     let wrong = body(r#"printf("%d", dict_find("<a>", "//a"));"#, 1);
     assert!(wrong.starts_with("!this is no dictionary: ") && wrong.ends_with("|-1|"), "{wrong}");
+    let missing = body(r#"printf("%d", dict_find("none.xml", "//a"));"#, 1);
+    assert!(missing.starts_with("!there is no dictionary `none.xml`: ") && missing.ends_with("|-1|"), "{missing}");
 }
 
 #[test]

@@ -202,3 +202,105 @@ fn results_change_with_what_their_coordinates_do() {
         r#"color k = texture("t", u * .1 + .45, v, "interp", "linear", "wrap", "clamp"); printf("%.3g", Dx(k));"#;
     assert_eq!(printed(body, [0.5, 0.5]), "-0.1 0.1 0|");
 }
+
+/// An uncompressed TIFF of bytes, by its tags beside the usual ones: number and value.
+fn tiff(width: u32, height: u32, channels: u32, more: &[(u16, u32)], bytes: &[u8]) -> Vec<u8> {
+    let mut tags = vec![
+        (256, width),
+        (257, height),
+        (258, 8),
+        (259, 1),
+        (262, if channels == 3 { 2 } else { 1 }),
+        (277, channels),
+    ];
+    let planar = more.contains(&(284, 2));
+    tags.extend_from_slice(more);
+    let planes = if planar { channels } else { 1 };
+    let (counts, start) = (planes as usize, 8 + 2 + 12 * (tags.len() as u32 + 3) + 4);
+    let data = start + if counts > 1 { 8 * planes } else { 0 };
+    let each = bytes.len() as u32 / planes;
+    tags.extend([
+        (273, if counts > 1 { start } else { data }),
+        (278, height),
+        (279, if counts > 1 { start + 4 * planes } else { each }),
+    ]);
+    tags.sort_unstable();
+    let mut out = b"II*\0\x08\0\0\0".to_vec();
+    out.extend((tags.len() as u16).to_le_bytes());
+    for (tag, value) in tags {
+        let count = if matches!(tag, 273 | 279) { planes } else { 1 };
+        out.extend(tag.to_le_bytes().into_iter().chain(4u16.to_le_bytes()));
+        out.extend(count.to_le_bytes().into_iter().chain(value.to_le_bytes()));
+    }
+    out.extend([0; 4]);
+    if counts > 1 {
+        (0..planes).for_each(|plane| out.extend((data + plane * each).to_le_bytes()));
+        (0..planes).for_each(|_| out.extend(each.to_le_bytes()));
+    }
+    out.extend(bytes);
+    out
+}
+
+fn read_back(name: &str, bytes: &[u8]) -> Result<Texture, velour::texture::TextureError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    velour::texture::read(&path, 1 << 30)
+}
+
+#[test]
+fn planes_of_a_tiff_are_its_channels() {
+    let (width, height) = (5u32, 3u32);
+    let number = |x: u32, y: u32, c: u32| (40 * c + 7 * y + x) as u8;
+    let cells = || (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)));
+    for channels in [1, 2, 3, 4, 6] {
+        let planes: Vec<u8> = (0..channels).flat_map(|c| cells().map(move |(x, y)| number(x, y, c))).collect();
+        let woven: Vec<u8> = cells().flat_map(|(x, y)| (0..channels).map(move |c| number(x, y, c))).collect();
+        for (planar, bytes) in [(2, &planes), (1, &woven)] {
+            let texture = read_back("t.tif", &tiff(width, height, channels, &[(284, planar)], bytes)).unwrap();
+            assert_eq!(texture.channels(), channels as usize, "{planar}");
+            for (x, y) in cells() {
+                for first in 0..channels {
+                    let how = Lookup { interpolation: Interpolation::Closest, first, ..clamped() };
+                    let (s, t) = ((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+                    let value = texture.value(s, t, [0.0; 4], &how)[0];
+                    assert_eq!(value, f32::from(number(x, y, first)) / 255.0, "{channels} {planar} {x} {y} {first}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_decoder_would_misread_is_refused() {
+    let wide = read_back("t.tif", &tiff(2, 2, 6, &[(284, 1), (317, 2)], &[7; 24]));
+    assert!(wide.unwrap_err().to_string().contains("a predictor over 6 channels"));
+    let mut bits = tiff(8, 1, 1, &[], &[0x5a]);
+    let at = bits.windows(2).position(|tag| tag == 258u16.to_le_bytes()).unwrap();
+    bits[at + 8] = 1;
+    assert!(read_back("t.tif", &bits).unwrap_err().to_string().contains("1 bits a channel"));
+}
+
+/// s and t span what is displayed, of which the data may be a part.
+#[test]
+fn the_data_of_an_exr_may_be_a_part_of_it() {
+    use exr::prelude::*;
+    let layer = Layer::new(
+        (4, 2),
+        LayerAttributes::default().with_position(Vec2(3, 1)),
+        Encoding::UNCOMPRESSED,
+        SpecificChannels::rgb(|at: Vec2<usize>| (0.1 * at.0 as f32, 0.5 + 0.1 * at.1 as f32, 1.0f32)),
+    );
+    let attributes = ImageAttributes::new(IntegerBounds::new((0, 0), (10, 5)));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("part.exr");
+    Image::new(attributes, layer).write().to_file(&path).unwrap();
+    let texture = velour::texture::read(&path, 1 << 30).unwrap();
+    assert_eq!(texture.size(), [10, 5]);
+    let at = |x: f32, y: f32| {
+        let how = Lookup { interpolation: Interpolation::Closest, ..clamped() };
+        texture.value((x + 0.5) / 10.0, (y + 0.5) / 5.0, [0.0; 4], &how)
+    };
+    assert_eq!((at(2.0, 1.0)[2], at(3.0, 0.0)[2], at(7.0, 1.0)[2]), (0.0, 0.0, 0.0));
+    assert_eq!((at(3.0, 1.0)[..3].to_vec(), at(6.0, 2.0)[..3].to_vec()), (vec![0.0, 0.5, 1.0], vec![0.3, 0.6, 1.0]));
+}

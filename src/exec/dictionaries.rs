@@ -21,14 +21,20 @@ impl Run<'_> {
             self.report_once(lane, span, Mistake::Other, message);
             return None;
         }
-        let read = if text.trim_start().starts_with('<') { None } else { self.host.read_text(text) };
-        let found = match Dictionary::parse(read.as_deref().unwrap_or(text)) {
+        let read = if text.trim_start().starts_with('<') { Some(text.to_owned()) } else { self.host.read_text(text) };
+        let parsed = match &read {
+            Some(read) => Dictionary::parse(read).map_err(|reason| format!("this is no dictionary: {reason}")),
+            None => Err(format!(
+                "there is no dictionary `{text}`: neither a text that begins with `<` nor a file that can be read"
+            )),
+        };
+        let found = match parsed {
             Ok(dictionary) => {
                 self.s.dictionaries.parsed.push(dictionary);
                 Some(self.s.dictionaries.parsed.len() - 1)
             }
             Err(reason) => {
-                self.report_once(lane, span, Mistake::Other, format!("this is no dictionary: {reason}"));
+                self.report_once(lane, span, Mistake::Other, reason);
                 None
             }
         };

@@ -40,6 +40,13 @@ pub enum RenderError {
         /// How many materials the scene has.
         count: usize,
     },
+    /// Shaders move surfaces of too many triangles.
+    Facets {
+        /// How many there would be.
+        facets: u64,
+        /// How many there may be.
+        most: u64,
+    },
     /// The threads could not be started, for this reason.
     Threads(String),
     /// A thread has failed, which is a mistake in this crate.
@@ -57,6 +64,10 @@ impl fmt::Display for RenderError {
             RenderError::Material { index, count } => {
                 write!(f, "there is no material {index}; the scene has {count}, counted from 0")
             }
+            RenderError::Facets { facets, most } => write!(
+                f,
+                "displacement takes {facets} triangles, and {most} are the most: give spheres and quads a smaller `resolution`"
+            ),
             RenderError::Threads(reason) => write!(f, "the threads could not be started: {reason}"),
             RenderError::ThreadFailed => f.write_str("a thread has failed"),
         }
@@ -68,7 +79,8 @@ impl std::error::Error for RenderError {
         match self {
             RenderError::Settings(error) => Some(error),
             RenderError::Camera(flaw) => Some(flaw),
-            RenderError::Material { .. }
+            RenderError::Facets { .. }
+            | RenderError::Material { .. }
             | RenderError::Threads(_)
             | RenderError::ThreadFailed
             | RenderError::Shader(_) => None,

@@ -113,13 +113,13 @@ impl Renderer {
         check_camera(&scene.camera)?;
         let pool = pool(settings)?;
         let make = || {
-            let (scene, reports) = displaced(scene, settings);
+            let (scene, reports) = displaced(scene, settings)?;
             let accel = Arc::new(Accel::new(&scene.geometry));
             let mut world = World::new(accel, scene, settings.clone(), None);
             world.reports.extend(reports);
-            world
+            Ok(world)
         };
-        let world = pool.install(make);
+        let world = pool.install(make)?;
         Ok(Renderer {
             waves: empty_waves(&pool),
             gathered: Mutex::new(Gathered::new(&world, start)),

@@ -34,4 +34,6 @@ pub mod ray_type {
     pub const REFLECTION: i32 = 16;
     /// After a clear refraction.
     pub const REFRACTION: i32 = 32;
+    /// No ray: a corner that displacement looks at.
+    pub const DISPLACEMENT: i32 = 64;
 }

@@ -37,6 +37,8 @@ pub struct Builder<'c> {
     later_models: HashMap<String, usize>,
     /// Meshes that another element will need.
     meshes: HashMap<PathBuf, MeshFile>,
+    /// Materials that have a displacement group and no other yet.
+    unshaded: Vec<u32>,
 }
 
 impl<'c> Builder<'c> {
@@ -60,6 +62,7 @@ impl<'c> Builder<'c> {
             by_name: HashMap::new(),
             later_models: HashMap::new(),
             meshes: HashMap::new(),
+            unshaded: Vec::new(),
         }
     }
 
@@ -94,6 +97,12 @@ impl<'c> Builder<'c> {
         }
         if let Some(oddity) = extent::oddity(&self.geometry) {
             self.scene.warnings.push(format!("{root}: warning: {oddity}"));
+        }
+        for &id in &self.unshaded {
+            let Material { name, place, .. } = &self.scene.materials[id as usize];
+            self.scene.warnings.push(format!(
+                "{place}: warning: displacement group `{name}` is alone: give it and the group that shades its surfaces one `name`"
+            ));
         }
         Ok(Scene { geometry: Arc::new(self.geometry), ..self.scene })
     }
@@ -315,9 +324,15 @@ impl<'c> Builder<'c> {
             let material = &mut self.scene.materials[id as usize];
             match spec.usage {
                 Usage::Displacement => material.displacement = Some(group),
-                Usage::Surface | Usage::Volume | Usage::Shader => material.surface = group,
+                Usage::Surface | Usage::Volume | Usage::Shader => {
+                    material.surface = group;
+                    self.unshaded.retain(|unshaded| *unshaded != id);
+                }
             }
             return;
+        }
+        if spec.usage == Usage::Displacement {
+            self.unshaded.push(self.scene.materials.len() as u32);
         }
         if let Some(name) = name {
             self.by_name.insert(name.to_owned(), self.scene.materials.len() as u32);

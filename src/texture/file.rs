@@ -63,7 +63,7 @@ pub fn read(path: &Path, budget: u64) -> Result<Texture, TextureError> {
     let fail = |reason: String| TextureError::Unreadable { path: path.to_owned(), reason };
     // The decoders are others' code: whatever a broken file makes them do ends here.
     let decode = || match extension.as_str() {
-        "exr" => read_exr(path),
+        "exr" => read_exr(path, budget),
         "tif" | "tiff" | "tx" | "env" => read_tiff(path, budget),
         _ => read_image(path, budget),
     };
@@ -130,7 +130,13 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
         if levels.is_empty() {
             wrap = tiff_wrap(&mut decoder);
         }
-        let rows = match decoder.read_image().map_err(failed)? {
+        let layout = TiffLayout::of(&mut decoder)?;
+        let mut all = DecodingResult::U8(Vec::new());
+        let whole = decoder.read_image_to_buffer(&mut all).map_err(failed)?;
+        if all.as_buffer(0).as_bytes().len() < whole.complete_len {
+            return Err("its channels do not fit into memory together".to_owned());
+        }
+        let rows = match all {
             DecodingResult::U8(all) => Texels::Bytes(all),
             DecodingResult::U16(all) => Texels::Words(all),
             DecodingResult::F32(all) => Texels::Floats(all),
@@ -141,13 +147,8 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
             }
             _ => return Err("its texels are of a kind that no texture has".to_owned()),
         };
-        let count = match &rows {
-            Texels::Bytes(all) => all.len(),
-            Texels::Words(all) => all.len(),
-            Texels::Floats(all) => all.len(),
-        };
-        let channels = count / (width * height);
-        if channels == 0 || (of_all != 0 && channels != of_all) {
+        let (channels, rows) = layout.woven(rows, width * height)?;
+        if of_all != 0 && channels != of_all {
             break;
         }
         of_all = channels;
@@ -160,6 +161,59 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
         return Err("it has no texels".to_owned());
     }
     Ok(Texture::of_levels(levels, of_all).with_wrap(wrap))
+}
+
+/// How the numbers of a TIFF lie.
+struct TiffLayout {
+    samples: usize,
+    /// Channels one after the other, each of the whole picture.
+    planar: bool,
+}
+
+impl TiffLayout {
+    /// Refuses what its decoder would misread.
+    fn of<R: std::io::Read + std::io::Seek>(decoder: &mut tiff::decoder::Decoder<R>) -> Result<Self, String> {
+        use tiff::tags::Tag;
+        let mut number = |tag: Tag, otherwise: u32| match decoder.find_tag_unsigned_vec::<u32>(tag) {
+            Ok(Some(numbers)) => numbers.first().copied().unwrap_or(otherwise),
+            _ => otherwise,
+        };
+        let samples = number(Tag::SamplesPerPixel, 1) as usize;
+        let planar = number(Tag::PlanarConfiguration, 1) == 2;
+        let bits = number(Tag::BitsPerSample, 1);
+        if bits < 8 {
+            return Err(format!("its texels have {bits} bits a channel, and 8 are the least"));
+        }
+        if samples > 4 && !planar && number(Tag::Predictor, 1) != 1 {
+            return Err(format!("it is compressed with a predictor over {samples} channels, and 4 are the most"));
+        }
+        Ok(TiffLayout { samples, planar })
+    }
+
+    /// The numbers of one texel side by side, and how many they are.
+    fn woven(&self, numbers: Texels, texels: usize) -> Result<(usize, Texels), String> {
+        let weave = match &numbers {
+            _ if !self.planar || self.samples < 2 => None,
+            Texels::Bytes(all) => Some(Texels::Bytes(interleaved(all, texels))),
+            Texels::Words(all) => Some(Texels::Words(interleaved(all, texels))),
+            Texels::Floats(all) => Some(Texels::Floats(interleaved(all, texels))),
+        };
+        let numbers = weave.unwrap_or(numbers);
+        let count = match &numbers {
+            Texels::Bytes(all) => all.len(),
+            Texels::Words(all) => all.len(),
+            Texels::Floats(all) => all.len(),
+        };
+        match count / texels {
+            0 => Err("it has no texels".to_owned()),
+            channels => Ok((channels, numbers)),
+        }
+    }
+}
+
+/// Planes of so many texels, one texel after the other.
+fn interleaved<T: Copy>(planes: &[T], texels: usize) -> Vec<T> {
+    (0..texels).flat_map(|at| planes[at..].iter().step_by(texels).copied()).collect()
 }
 
 /// How `maketx --wrap` has marked a file: `mode` or `mode,mode` in a tag of Pixar's.
@@ -183,13 +237,34 @@ fn rank(name: &str) -> (usize, String) {
     (at, name.to_owned())
 }
 
-fn read_exr(path: &Path) -> Result<Texture, String> {
+/// Rows of a part of a picture in the whole, which is 0 elsewhere.
+fn placed(rows: &[f32], [width, _]: [usize; 2], count: usize, offset: [i32; 2], display: [usize; 2]) -> Vec<f32> {
+    let mut out = vec![0.0; display[0] * display[1] * count];
+    for (at, texel) in rows.chunks_exact(count).enumerate() {
+        let (x, y) = (i64::from(offset[0]) + (at % width) as i64, i64::from(offset[1]) + (at / width) as i64);
+        if (0..display[0] as i64).contains(&x) && (0..display[1] as i64).contains(&y) {
+            let to = (y as usize * display[0] + x as usize) * count;
+            out[to..to + count].copy_from_slice(texel);
+        }
+    }
+    out
+}
+
+fn read_exr(path: &Path, budget: u64) -> Result<Texture, String> {
     use exr::ReadChannels;
     use exr::ReadLayers;
     let image = exr::read().no_deep_data().all_resolution_levels().all_channels().first_valid_layer().all_attributes();
     let image = image.from_file(path).map_err(|error| error.to_string())?;
     let layer = image.layer_data;
     let size = [layer.size.0, layer.size.1];
+    // s and t span the display window, of which the data may be a part.
+    let (whole, data) = (image.attributes.display_window, layer.attributes.layer_position);
+    let offset = [data.0 - whole.position.0, data.1 - whole.position.1];
+    let display = [whole.size.0, whole.size.1];
+    let part = (offset, display) != ([0; 2], size);
+    if part {
+        sized(display[0], display[1], 4, budget)?;
+    }
     let mut channels: Vec<_> = layer.channel_data.list.into_iter().collect();
     channels.sort_by_key(|channel| rank(&channel.name.to_string()));
     let count = channels.len();
@@ -208,7 +283,13 @@ fn read_exr(path: &Path) -> Result<Texture, String> {
         if planes.iter().any(|plane| plane.len() != width * height) {
             break;
         }
-        let rows = (0..width * height).flat_map(|at| planes.iter().map(move |plane| plane[at])).collect();
+        let rows: Vec<f32> = (0..width * height).flat_map(|at| planes.iter().map(move |plane| plane[at])).collect();
+        if part {
+            let rows = placed(&rows, size, count, offset, display);
+            levels.push(Level::of_rows(display[0], display[1], count, &Texels::Floats(rows)));
+            // Levels of a part do not lie on those of the whole.
+            break;
+        }
         levels.push(Level::of_rows(width, height, count, &Texels::Floats(rows)));
     }
     if levels.is_empty() {

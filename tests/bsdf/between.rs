@@ -157,7 +157,7 @@ fn schlicks_glass_loses_nothing_and_stretched_glass_never_gains() {
                 let [mean, ..] = case.weights(view(cos), inside, 512);
                 assert!((mean - 1.0).abs() <= 2e-3, "schlick {alpha} at {cos}, inside {inside}: {mean}");
             }
-            for ratio in [2.0, 4.0, 10.0] {
+            for ratio in [1.05, 1.2, 1.5, 2.0, 4.0, 10.0] {
                 for (closure, eta) in [("conductor_bsdf", 0.0), ("dielectric_bsdf", 1.5)] {
                     for widths in [[alpha, alpha / ratio], [alpha / ratio, alpha]] {
                         let case = Case { closure, widths, eta, distribution: "ggx", keywords: &[] };
@@ -166,7 +166,8 @@ fn schlicks_glass_loses_nothing_and_stretched_glass_never_gains() {
                         let [once, ..] = single.weights(view(cos), false, 32);
                         let what =
                             format!("{closure} {widths:?} at {cos}: {mean} where single scattering leaves {once}");
-                        assert!(mean <= 1.0 + 1e-2 && mean >= once - 1e-3, "{what}");
+                        let least = if ratio < 1.1 { 0.985 } else { once - 1e-3 };
+                        assert!(mean <= 1.0 + 1e-2 && mean >= least, "{what}");
                     }
                 }
             }

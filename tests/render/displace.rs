@@ -127,3 +127,75 @@ fn a_group_that_moves_may_come_before_the_one_that_shades() {
     let [after, before] = [after, before].map(|xml| picture_with(&xml, &[GREY, WHITE, moves], |_| ()));
     assert!(difference(&after, &before) == 0.0 && after.mean()[0] < 0.95);
 }
+
+/// A shader of emission by position, under a group that moves nothing or not all.
+fn seen(body: &str, shade: &str, moves: &str, at: [u32; 2]) -> [f32; 3] {
+    let shade = format!("surface grey() {{ Ci = emission() * color({shade}); }}");
+    let image = picture_with(&scene(body, moves), &[&shade, WHITE, moves], |s| s.samples = 4);
+    image.pixel(at[0], at[1])[..3].try_into().unwrap()
+}
+
+#[test]
+fn objects_of_equal_area_do_not_share_it() {
+    let weave = r#"<Weave corner="-1,-1,0" edge_x="2,0,0" edge_y="0,2,0" warp="6" weft="6"/>"#;
+    let shade = "surface grey() { Ci = emission() * surfacearea(); }";
+    let nothing = "displacement move() { }";
+    let [with, without] = [nothing, ""].map(|moves| {
+        let shaders: Vec<&str> = [shade, WHITE, moves].into_iter().filter(|text| !text.is_empty()).collect();
+        picture_with(&scene(weave, moves), &shaders, |s| s.samples = 4)
+    });
+    assert!(difference(&with, &without) < 1e-4, "{}", difference(&with, &without));
+}
+
+#[test]
+fn a_surface_that_is_moved_in_part_bends_at_the_edge() {
+    let board = r#"<Quad corner="-1,-1,0" edge_x="2,0,0" edge_y="0,2,0" resolution="8"/>"#;
+    let moves = "displacement move() { if (P[0] > 0) P[2] += .6 * P[0]; }";
+    // Beside the middle the normal is half way, not where it was.
+    let left = seen(board, "-N[0], 0, 0", moves, [31, 32])[0];
+    assert!(left > 0.15 && left < 0.35, "{left}");
+    assert!(seen(board, "-N[0], 0, 0", moves, [20, 32])[0].abs() < 1e-4);
+}
+
+#[test]
+fn how_a_polygon_is_cut_does_not_show() {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
+    std::fs::write(folder.path().join("cube.obj"), cube).unwrap();
+    let moves = "displacement move() { P += .2 * N; }";
+    let black = "surface grey() { Ci = 0; }";
+    let files = [black, WHITE, moves].into_iter();
+    let files = files.fold(ShaderFiles::default(), |files, text| files.with_shader(text).unwrap());
+    let xml = scene(r#"<Model filename="cube.obj"/>"#, moves).replace("0,0,4", "0,0,30").replace("60", "12");
+    let loaded = Scene::load(&xml, &[folder.path().to_owned()], &files).unwrap_or_else(|e| panic!("{e}"));
+    let settings = Settings { width: 64, height: 64, samples: 1, jitter: false, ..Settings::default() };
+    let image = render(&loaded, &settings, &Silent).unwrap();
+    for y in 0..64 {
+        for x in 0..32 {
+            assert_eq!(image.pixel(x, y), image.pixel(63 - x, y), "{x} {y}");
+        }
+    }
+}
+
+#[test]
+fn displacement_is_a_ray_type_of_its_own() {
+    let board = r#"<Quad corner="-1,-1,0" edge_x="2,0,0" edge_y="0,2,0"/>"#;
+    let moves = r#"displacement move() { if (raytype("displacement") && !raytype("shadow")) P[2] += .4; }"#;
+    assert!((seen(board, "P[2], 0, 0", moves, [32, 32])[0] - 0.4).abs() < 1e-5);
+}
+
+#[test]
+fn what_cannot_be_moved_is_told() {
+    let settings = Settings { width: 8, height: 8, samples: 1, ..Settings::default() };
+    let moves = "displacement move() { P = 0; }";
+    let fine = r#"<Sphere center="0,0,0" radius="1" resolution="4294967295"/>"#;
+    let error = render(&scene_with(&scene(fine, moves), &[GREY, WHITE, moves]), &settings, &Silent).unwrap_err();
+    assert!(error.to_string().contains("give spheres and quads a smaller `resolution`"), "{error}");
+    let image = picture(r#"<Sphere center="0,0,0" radius="1"/>"#, moves);
+    let told: Vec<String> = image.about.reports.iter().map(ToString::to_string).collect();
+    assert!(told.iter().any(|text| text.contains("triangles no area; they are left out")), "{told:?}");
+    let alone = scene("", moves).replace(r#"<ShaderGroup name="it">shader grey l1;</ShaderGroup>"#, "");
+    let warnings = scene_with(&alone, &[GREY, WHITE, moves]).warnings;
+    assert!(warnings.iter().any(|text| text.contains("displacement group `it` is alone")), "{warnings:?}");
+}

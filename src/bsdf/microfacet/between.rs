@@ -15,9 +15,6 @@ use crate::math::warp::cosine_hemisphere;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-/// Of stretched facets so much of what they lose is given back: their loss is estimated from round ones, and no direction may gain.
-const STRETCHED: f32 = 0.9;
-
 /// The choice of a distribution and its shadowing term, for [`Between`].
 pub fn choice(facets: Facets, geometry: Geometry) -> Choice {
     Choice(geometry as u8 + 3 * facets as u8)
@@ -30,7 +27,7 @@ pub fn choice(facets: Facets, geometry: Geometry) -> Choice {
 /// with F_ms = F_avg² E_avg / (1 - F_avg (1 - E_avg)).
 /// Domain: widths clamped to 1e-3..1. Gives: f cos in 1/sr; with the single-scattering lobe a white boundary has albedo 1.
 /// Departs from source: where the two widths differ, E is the larger one of two round boundaries', of the width in the
-/// direction's azimuth and of the geometric mean, and a tenth of the rest stays lost, so that no direction gains.
+/// direction's azimuth and of the geometric mean, and up to a tenth of the rest stays lost, so that no direction gains.
 #[derive(Clone, Copy, Debug)]
 pub struct Between<F> {
     width: [f32; 2],
@@ -47,15 +44,15 @@ impl<F: Fresnel> Between<F> {
         if x == y {
             return table.lost(x, cos);
         }
-        let toward = table.lost(Widths { x, y }.toward(w), cos);
-        STRETCHED * toward.min(table.lost((x * y).sqrt(), cos))
+        let widths = Widths { x, y };
+        widths.given_back() * table.lost(widths.toward(w), cos).min(table.lost((x * y).sqrt(), cos))
     }
 
     /// The mean of 1 - E, or a little more.
     #[inline(always)]
     fn mean_lost(&self, table: &WhiteTable) -> f32 {
         let [x, y] = self.width;
-        select(x == y, 1.0, STRETCHED) * table.mean_lost((x * y).sqrt())
+        Widths { x, y }.given_back() * table.mean_lost((x * y).sqrt())
     }
 
     /// The color of what leaves in the end.

@@ -116,9 +116,8 @@ impl<D: Distribution, F: Fresnel, const REFRACT: bool> Microfacet<D, F, REFRACT>
         if widths.x == widths.y {
             return at(widths.x);
         }
-        // Of stretched facets the loss is only estimated, and no direction may gain.
         let least = at(self.width_toward(w)).max(at((widths.x * widths.y).sqrt()));
-        0.1 + 0.9 * least
+        1.0 - widths.given_back() * (1.0 - least)
     }
 
     /// What this half takes from a base, given what the reflecting half does.

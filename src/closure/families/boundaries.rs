@@ -52,7 +52,7 @@ const SHARED: &[Waiver] = &[
     Waiver {
         claim: Claim::Energy,
         only: Some(("scattering", "multiple")),
-        why: "what single scattering leaves is known to 2e-3 for Smith's shadowing, to 2e-2 for grooves and where f90 is not 1",
+        why: "what single scattering leaves is known to 2e-3 for Smith's shadowing and equal widths, to 2e-2 for grooves and where f90 is not 1",
     },
 ];
 

@@ -7,14 +7,32 @@ use std::f32::consts::PI;
 
 /// Steps along a side of what has no triangles of its own, where its element does not say: testrender's.
 const RESOLUTION: u32 = 64;
-/// The most steps.
-const MOST_RESOLUTION: u32 = 4096;
+/// The most triangles that may be moved; each takes some 400 bytes on the way.
+pub const MOST_FACETS: u64 = 8_000_000;
+
+/// Steps around or along and down or across that a primitive without triangles of its own is cut into.
+fn steps(of: &Geometry, number: usize) -> [u32; 2] {
+    let steps = of.resolution(number as u32).unwrap_or(RESOLUTION).max(1);
+    match of.primitives[number].shape {
+        Shape::Sphere { .. } => [steps.max(2).saturating_mul(2), steps.max(2)],
+        Shape::Quad { .. } | Shape::Triangle { .. } => [steps; 2],
+    }
+}
+
+/// How many triangles a primitive becomes, or a few more.
+pub fn facets_of(of: &Geometry, number: usize) -> u64 {
+    let [columns, rows] = steps(of, number).map(u64::from);
+    match of.primitives[number].shape {
+        Shape::Sphere { .. } | Shape::Quad { .. } => columns.saturating_mul(rows).saturating_mul(2),
+        Shape::Triangle { .. } => 1,
+    }
+}
 
 /// Adds the triangles of a primitive of `from` to `to`; a sphere's and a parallelogram's have normals and texture coordinates, by
 /// which the moved surface is smooth again.
 pub fn add_facets(from: &Geometry, number: usize, to: &mut Geometry) {
     let primitive = from.primitives[number];
-    let steps = from.resolution(number as u32).unwrap_or(RESOLUTION).clamp(1, MOST_RESOLUTION);
+    let [around, down] = steps(from, number);
     match primitive.shape {
         Shape::Triangle { .. } => {
             let normals = kept(&from.normals, primitive.normals, &mut to.normals);
@@ -24,14 +42,12 @@ pub fn add_facets(from: &Geometry, number: usize, to: &mut Geometry) {
         Shape::Quad { corner, edge_x, edge_y } => {
             let normal = edge_x.cross(edge_y).normalize_or(Vec3::Y);
             let at = |u: u32, v: u32| {
-                let uv = Vec2::new(u as f32, v as f32) / steps as f32;
+                let uv = Vec2::new(u as f32 / around as f32, v as f32 / down as f32);
                 Corner { p: corner + uv.x * edge_x + uv.y * edge_y, n: normal, uv }
             };
-            add_grid(to, primitive.object, [steps, steps], at);
+            add_grid(to, primitive.object, [around, down], at);
         }
         Shape::Sphere { center, radius } => {
-            let around = 2 * steps.max(2);
-            let down = steps.max(2);
             let at = |u: u32, v: u32| {
                 // The last column lies on the first, and every corner of a pole is the pole.
                 let (sin_u, cos_u) = sincos(2.0 * PI * (u % around) as f32 / around as f32);

@@ -1,8 +1,9 @@
 //! Displacement: surfaces that a shader moves, before anything else is made of them.
 //!
 //! A shader of a `type="displacement"` group runs at every corner of every triangle, and where it leaves `P` the corner goes. Spheres and
-//! parallelograms become triangles first. Corners at one place, of one element, go to the mean of where they are sent, so that no crack
-//! opens; smooth normals are those of the moved triangles around a corner, weighted by area, where they were one normal before.
+//! parallelograms become triangles first. Corners at one place, of one element, go to the mean of the different places that they are sent
+//! to, so that no crack opens and the way a polygon is cut does not show; smooth normals are those of the triangles around a corner,
+//! weighted by area, where they were one normal before. Such shaders see no derivatives.
 //!
 //! Source: what OSL's testrender does. Differs from it: it welds by the indices of a mesh, which cracks where a mesh names a place twice.
 //!
@@ -11,35 +12,49 @@
 
 mod facets;
 
+use super::error::RenderError;
 use super::host::host;
 use super::plan::Needs;
 use super::points::fill;
 use super::probe::probe;
-use super::segment::Segment;
+use super::segment::{Segment, ray_type};
 use super::settings::Settings;
 use crate::exec::{Group, Host, MAX_LANES, Machine, Points, Report, ReportPlace, Values};
 use crate::scene::{Geometry, Material, Place, Primitive, Scene, Shape};
-use facets::add_facets;
-use glam::Vec3;
+use facets::{MOST_FACETS, add_facets, facets_of};
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use smallvec::SmallVec;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The scene with its surfaces moved, where something moves them, and what shaders said meanwhile.
-pub fn displaced(scene: &Scene, settings: &Settings) -> (Scene, Vec<Report>) {
+///
+/// # Errors
+/// The surfaces that are moved take more than [`MOST_FACETS`] triangles.
+pub fn displaced(scene: &Scene, settings: &Settings) -> Result<(Scene, Vec<Report>), RenderError> {
     let mut scene = scene.clone();
     let moves = |material: &Material| material.displacement.is_some();
     let moved: Vec<bool> =
         scene.geometry.objects.iter().map(|object| moves(&scene.materials[object.material as usize])).collect();
     if !moved.contains(&true) {
-        return (scene, Vec::new());
+        return Ok((scene, Vec::new()));
+    }
+    let primitives = scene.geometry.primitives.iter().enumerate();
+    let facets = primitives.filter(|(_, p)| moved[p.object as usize]).map(|(at, _)| facets_of(&scene.geometry, at));
+    let facets: u64 = facets.sum();
+    if facets > MOST_FACETS {
+        return Err(RenderError::Facets { facets, most: MOST_FACETS });
     }
     let mut geometry = in_facets(&scene.geometry, &moved);
     let host: Arc<dyn Host> = Arc::new(host(&scene.camera, settings, &scene.textures, None));
-    let (targets, reports) = targets(&scene, &geometry, &moved, &host);
-    move_corners(&mut geometry, &moved, &targets);
+    let (targets, mut reports) = targets(&scene, &geometry, &moved, &host);
+    let lost = move_corners(&mut geometry, &moved, &targets);
+    if lost > 0 {
+        reports.push(Report::warning(format!("displacement leaves {lost} triangles no area; they are left out")));
+    }
     scene.geometry = Arc::new(geometry);
-    (scene, reports)
+    Ok((scene, reports))
 }
 
 /// The same geometry, with triangles in place of the primitives of objects that are moved.
@@ -139,6 +154,7 @@ impl Batch {
             points.p.set(lane, p);
             points.i.set(lane, (p - eye).normalize_or(Vec3::NEG_Z));
         }
+        points.ray_type.fill(ray_type::DISPLACEMENT);
         self.machine.shade(group, points);
         let sent = self.machine.output(group, "P");
         let sent = |lane: usize| match sent.map(|view| view.lane(lane)) {
@@ -167,55 +183,57 @@ fn bits(v: Vec3) -> [u32; 3] {
 /// What lies at one place of one element.
 type At = (u32, [u32; 3]);
 
-/// A sum and how many parts it has.
-#[derive(Clone, Copy, Default)]
-struct Mean {
-    sum: glam::DVec3,
-    count: f64,
-}
+/// Where a corner is sent, each place once.
+type Sent = SmallVec<[Vec3; 2]>;
 
 /// Moves the corners, also those of triangles of the same element that no shader moves but which share them; then makes smooth normals
-/// and areas anew.
-fn move_corners(geometry: &mut Geometry, moved: &[bool], targets: &[Option<[Vec3; 3]>]) {
+/// and areas anew. Gives how many triangles have lost their area.
+fn move_corners(geometry: &mut Geometry, moved: &[bool], targets: &[Option<[Vec3; 3]>]) -> usize {
     let elements = elements(geometry);
+    let before = areas(geometry);
     let element = |primitive: &Primitive| elements[primitive.object as usize];
-    let mut means: HashMap<At, Mean> = HashMap::new();
-    let mut add = |primitive: &Primitive, sent: [Vec3; 3], only_known: bool| {
-        for (from, to) in corners_of(&primitive.shape).into_iter().zip(sent) {
-            let at = (element(primitive), bits(from));
-            if only_known && !means.contains_key(&at) {
-                continue;
-            }
-            let mean = means.entry(at).or_default();
-            (mean.sum, mean.count) = (mean.sum + to.as_dvec3(), mean.count + 1.0);
+    let mut sent: HashMap<At, Sent> = HashMap::new();
+    let mut send = |at: At, to: Vec3, only_known: bool| {
+        if only_known && !sent.contains_key(&at) {
+            return;
+        }
+        let places = sent.entry(at).or_default();
+        if !places.iter().any(|known| bits(*known) == bits(to)) {
+            places.push(to);
         }
     };
-    for (primitive, sent) in geometry.primitives.iter().zip(targets) {
-        if let Some(sent) = sent {
-            add(primitive, *sent, false);
+    let still = |primitive: &Primitive| matches!(primitive.shape, Shape::Triangle { .. });
+    for only_known in [false, true] {
+        for (primitive, target) in geometry.primitives.iter().zip(targets) {
+            let from = corners_of(&primitive.shape);
+            let to = match (only_known, target) {
+                (false, Some(target)) => *target,
+                (true, None) if still(primitive) => from,
+                _ => continue,
+            };
+            from.into_iter().zip(to).for_each(|(from, to)| send((element(primitive), bits(from)), to, only_known));
         }
     }
-    let still = |primitive: &Primitive| matches!(primitive.shape, Shape::Triangle { .. });
-    for (primitive, _) in geometry.primitives.iter().zip(targets).filter(|(p, sent)| sent.is_none() && still(p)) {
-        add(primitive, corners_of(&primitive.shape), true);
-    }
-    let sent = |primitive: &Primitive| {
-        corners_of(&primitive.shape).map(|p| match means.get(&(element(primitive), bits(p))) {
-            Some(mean) => (mean.sum / mean.count).as_vec3(),
-            None => p,
-        })
+    let mean = |places: &Sent| {
+        let sum: DVec3 = places.iter().map(|place| place.as_dvec3()).sum();
+        (sum / places.len() as f64).as_vec3()
+    };
+    let moved_to = |primitive: &Primitive| {
+        corners_of(&primitive.shape).map(|p| sent.get(&(element(primitive), bits(p))).map_or(p, mean))
     };
     let shapes: Vec<Option<[Vec3; 3]>> =
-        geometry.primitives.iter().map(|primitive| still(primitive).then(|| sent(primitive))).collect();
+        geometry.primitives.iter().map(|primitive| still(primitive).then(|| moved_to(primitive))).collect();
     smooth(geometry, &elements, &shapes);
-    for (primitive, sent) in geometry.primitives.iter_mut().zip(&shapes) {
-        if let Some([a, b, c]) = *sent {
+    for (primitive, corners) in geometry.primitives.iter_mut().zip(&shapes) {
+        if let Some([a, b, c]) = *corners {
             primitive.shape = Shape::Triangle { a, b, c };
         }
     }
+    let all = geometry.primitives.len();
     let sound = |p: &Primitive| p.shape.area() > 0.0 && p.shape.area().is_finite();
     geometry.primitives.retain(|p| !moved[p.object as usize] || sound(p));
-    measure(geometry, moved);
+    measure(geometry, &elements, &before);
+    all - geometry.primitives.len()
 }
 
 /// A number for each object, the same for those of one element of the scene.
@@ -228,63 +246,69 @@ fn elements(geometry: &Geometry) -> Vec<u32> {
     geometry.objects.iter().map(|object| &object.place).map(number).collect()
 }
 
-/// Gives triangles whose corners have moved the normals of their new neighbourhood.
+/// A corner of an element and the normal that it has.
+type Bend = (At, [u32; 3]);
+
+/// Gives corners whose neighbourhood has moved the normals of the new one.
 fn smooth(geometry: &mut Geometry, elements: &[u32], moved_to: &[Option<[Vec3; 3]>]) {
-    let mut sums: HashMap<(At, [u32; 3]), glam::DVec3> = HashMap::new();
     let Geometry { primitives, normals, .. } = geometry;
-    let changed = |primitive: &Primitive, sent: &Option<[Vec3; 3]>| {
-        sent.filter(|sent| *sent != corners_of(&primitive.shape) && normals.len() > primitive.normals as usize)
+    let bends = |primitive: &Primitive, three: &[Vec3; 3]| -> [Bend; 3] {
+        let (element, corners) = (elements[primitive.object as usize], corners_of(&primitive.shape));
+        [0, 1, 2].map(|k| ((element, bits(corners[k])), bits(three[k])))
     };
-    let triangles: Vec<(usize, [Vec3; 3])> = primitives
-        .iter()
-        .zip(moved_to)
-        .enumerate()
-        .filter_map(|(number, (primitive, sent))| changed(primitive, sent).map(|sent| (number, sent)))
-        .collect();
-    let key = |primitive: &Primitive, k: usize, normal: Vec3| {
-        let at = (elements[primitive.object as usize], bits(corners_of(&primitive.shape)[k]));
-        (at, bits(normal))
-    };
-    for (number, [a, b, c]) in &triangles {
-        let primitive = &primitives[*number];
-        let three = normals[primitive.normals as usize];
-        let [p, q, r] = corners_of(&primitive.shape);
-        // Normals may point to the other side of their triangles, and then go on to.
-        let side = if (q - p).cross(r - p).dot(three[0] + three[1] + three[2]) < 0.0 { -1.0 } else { 1.0 };
-        let normal = side * (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
-        for (k, old) in three.into_iter().enumerate() {
-            *sums.entry(key(primitive, k, old)).or_default() += normal;
+    let mut sums: HashMap<Bend, DVec3> = HashMap::new();
+    for (primitive, to) in primitives.iter().zip(moved_to) {
+        let three = normals.get(primitive.normals as usize);
+        if let (Some(three), Some(to)) = (three, to)
+            && *to != corners_of(&primitive.shape)
+        {
+            sums.extend(bends(primitive, three).map(|bend| (bend, DVec3::ZERO)));
         }
     }
-    for (number, _) in &triangles {
-        let primitive = &primitives[*number];
-        let three = &mut normals[primitive.normals as usize];
-        let old = *three;
-        for k in 0..3 {
-            let sum = sums.get(&key(primitive, k, old[k])).copied().unwrap_or_default();
-            three[k] = sum.normalize_or(old[k].as_dvec3()).as_vec3();
+    for (primitive, to) in primitives.iter().zip(moved_to) {
+        let (Some(three), Some(to)) = (normals.get(primitive.normals as usize), to) else { continue };
+        let normal = |[a, b, c]: [Vec3; 3]| (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
+        // Normals may point to the other side of their triangles, and then go on to.
+        let against = normal(corners_of(&primitive.shape)).dot((three[0] + three[1] + three[2]).as_dvec3()) < 0.0;
+        let normal = if against { -normal(*to) } else { normal(*to) };
+        for bend in bends(primitive, three) {
+            sums.entry(bend).and_modify(|sum| *sum += normal);
+        }
+    }
+    for (primitive, _) in primitives.iter().zip(moved_to).filter(|(_, to)| to.is_some()) {
+        let Some(three) = normals.get_mut(primitive.normals as usize) else { continue };
+        for (k, bend) in bends(primitive, three).into_iter().enumerate() {
+            if let Some(sum) = sums.get(&bend) {
+                three[k] = sum.normalize_or(three[k].as_dvec3()).as_vec3();
+            }
         }
     }
 }
 
-/// Makes the areas of moved objects anew; objects that shared one, as the parts of a mesh do, share the new one.
-fn measure(geometry: &mut Geometry, moved: &[bool]) {
-    let mut areas = vec![0.0f64; geometry.objects.len()];
+/// The area of each object's own primitives.
+fn areas(geometry: &Geometry) -> Vec<f64> {
+    let mut areas = vec![0.0; geometry.objects.len()];
     for primitive in &geometry.primitives {
         areas[primitive.object as usize] += f64::from(primitive.shape.area());
     }
-    let key = |number: usize, geometry: &Geometry| {
-        let object = &geometry.objects[number];
-        (object.place.to_string(), object.surface_area.to_bits())
-    };
-    let mut together: HashMap<(String, u32), f64> = HashMap::new();
-    for (number, area) in areas.iter().enumerate() {
-        *together.entry(key(number, geometry)).or_default() += area;
+    areas
+}
+
+/// Makes the areas of objects anew that have changed since `before`; objects that shared one, as the parts of a mesh do, share the new one.
+fn measure(geometry: &mut Geometry, elements: &[u32], before: &[f64]) {
+    let now = areas(geometry);
+    let shares = |number: usize, stated: f32| (before[number] / f64::from(stated) - 1.0).abs() > 1e-4;
+    let key = |number: usize, stated: f32| (elements[number], stated.to_bits());
+    let mut together: HashMap<(u32, u32), [f64; 2]> = HashMap::new();
+    for (number, object) in geometry.objects.iter().enumerate().filter(|(n, object)| shares(*n, object.surface_area)) {
+        let [old, new] = together.entry(key(number, object.surface_area)).or_default();
+        (*old, *new) = (*old + before[number], *new + now[number]);
     }
-    for number in 0..areas.len() {
-        let whole = together.get(&key(number, geometry)).copied().unwrap_or_default();
-        if moved[number] {
-            geometry.objects[number].surface_area = whole as f32;
+    for (number, object) in geometry.objects.iter_mut().enumerate() {
+        let whole = together.get(&key(number, object.surface_area)).filter(|_| shares(number, object.surface_area));
+        let [old, new] = whole.copied().unwrap_or([before[number], now[number]]);
+        if old != new {
+            object.surface_area = new as f32;
         }
     }
 }
