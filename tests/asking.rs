@@ -174,6 +174,8 @@ fn dictionaries_are_searched_by_path() {
     assert!(wrong.starts_with("!this is no dictionary: ") && wrong.ends_with("|-1|"), "{wrong}");
     let missing = body(r#"printf("%d", dict_find("none.xml", "//a"));"#, 1);
     assert!(missing.starts_with("!there is no dictionary `none.xml`: ") && missing.ends_with("|-1|"), "{missing}");
+    let unread = body(r#"int k = dict_find("<a/>", "//[["); printf("%d", k);"#, 1);
+    assert!(unread.starts_with("!`//[[` is no path: ") && unread.ends_with("|0|"), "{unread}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::report::Mistake;
 use super::run::Run;
 use crate::ir::op::AttributeType;
 use crate::ir::program::Reg;
-use crate::ops::dictionary::Dictionary;
+use crate::ops::dictionary::{Dictionary, is_path};
 use std::sync::Arc;
 use velour_grammar::Span;
 
@@ -60,6 +60,13 @@ impl Run<'_> {
         lists[lane].len() as i32
     }
 
+    fn check_path(&mut self, path: &str, lane: usize, span: Span) {
+        if !is_path(path) {
+            let text = format!("`{path}` is no path: write names with / or // before them, and conditions in []");
+            self.report_once(lane, span, Mistake::Other, text);
+        }
+    }
+
     fn found(&self, lane: usize, number: i32) -> Option<&Found> {
         let at = usize::try_from(number).ok()?.checked_sub(1)?;
         self.s.dictionaries.found.get(lane)?.get(at)
@@ -75,6 +82,7 @@ impl Run<'_> {
             let (text, path) = (args.s(0).to_owned(), args.s(1).to_owned());
             let number = match self.dictionary(&text, lane, span) {
                 Some(dictionary) => {
+                    self.check_path(&path, lane, span);
                     let nodes = self.s.dictionaries.parsed[dictionary].find(0, &path);
                     self.keep(lane, dictionary, nodes.into(), 0, span)
                 }
@@ -93,6 +101,7 @@ impl Run<'_> {
             let args = Lane { run: self, src, lane };
             let below = self.found(lane, args.i(0)).map(|found| (found.dictionary, found.nodes[found.at]));
             let path = args.s(1).to_owned();
+            self.check_path(&path, lane, span);
             let number = below.map_or(0, |(dictionary, node)| {
                 let nodes = self.s.dictionaries.parsed[dictionary].find(node, &path);
                 self.keep(lane, dictionary, nodes.into(), 0, span)

@@ -77,7 +77,7 @@ impl Dictionary {
         // What lies below several nodes is looked at once.
         let inside = if deep { vec![self.below(from)] } else { Vec::new() };
         let starts = from.iter().map(|&node| match test {
-            "." => vec![node],
+            "." | "text()" => vec![node],
             ".." => vec![self.nodes[node].parent],
             _ if test.starts_with('@') => vec![node],
             _ => self.nodes[node].children.clone(),
@@ -112,6 +112,8 @@ impl Dictionary {
     fn passes(&self, node: usize, test: &str) -> bool {
         match test.strip_prefix('@') {
             Some(name) => self.attribute(node, name).is_some(),
+            // The text of an element is its value of no name, so that the element stands for it.
+            None if test == "text()" => !self.nodes[node].text.trim().is_empty(),
             None => matches!(test, "*" | "." | "..") || self.nodes[node].name == test,
         }
     }
@@ -144,6 +146,25 @@ impl Dictionary {
             (None, _) => None,
         }
     }
+}
+
+/// Is this a path: steps that are not empty, with brackets that are closed?
+pub fn is_path(path: &str) -> bool {
+    let mut depth = 0i32;
+    let closed = path.chars().all(|c| {
+        depth += i32::from(c == '[') - i32::from(c == ']');
+        depth >= 0
+    });
+    let mut rest = path.trim();
+    while closed && depth == 0 && !rest.is_empty() {
+        rest = rest.strip_prefix("//").or_else(|| rest.strip_prefix('/')).unwrap_or(rest);
+        let (step, after) = rest.split_at(step_end(rest));
+        if step.is_empty() || step.starts_with('[') {
+            return false;
+        }
+        rest = after;
+    }
+    closed && depth == 0
 }
 
 /// Where a step of a path ends: at a slash that is in no condition.
@@ -186,8 +207,16 @@ mod tests {
             ("//name/..", "b"),
             ("//nothing", ""),
             ("///", ""),
+            ("//item[@id='a']/text()", "a"),
+            ("//text()", "a-"),
         ] {
             assert_eq!(ids(path), found, "{path}");
+        }
+        for path in ["//item", "/a/b[1]/@c", "..", "*[x='/']/text()", ""] {
+            assert!(is_path(path), "{path}");
+        }
+        for path in ["//[[", "///", "a[", "a]", "a//", "/"] {
+            assert!(!is_path(path), "{path}");
         }
         let group = dictionary.find(0, "/list/group")[0];
         assert_eq!(dictionary.find(group, "item").len(), 1);
