@@ -166,3 +166,33 @@ fn reports_come_in_parts() {
     assert_eq!((mistake.lane, mistake.place.line, mistake.text.as_str()), (2, 4, "index 2 is outside 0..1"));
     assert_eq!(left.iter().filter(|report| report.kind == ReportKind::Output).count(), 8);
 }
+
+/// An element of an array, for each lane its own.
+#[test]
+fn an_element_of_an_attribute_is_asked_for_by_its_number() {
+    let mut host = PlainHost::default();
+    let mut add = |name: &str, value: Attribute| host.attributes.insert(name.to_owned(), value);
+    add("weights", Attribute::Floats(vec![0.5, 1.5, 2.5]));
+    add("tints", Attribute::Floats(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+    add("names", Attribute::Strings(vec!["a".to_owned(), "b".to_owned()]));
+    let text = r#"shader s(output float w = 9, output color c = 9, output string n = "", output int missing = 9) {
+        int k = (int)(3 * u);
+        int r = getattribute("weights", k, w);
+        r = getattribute("", "tints", 1, c);
+        r = getattribute("names", 1, n);
+        float none = 7;
+        missing = 10 * getattribute("weights", 3 + k, none) + getattribute("weights", -1, none) + (int)none;
+    }"#;
+    let group = Compiler::new().compile("s.osl", text).unwrap().group().keep_outputs().build().unwrap();
+    let mut machine = Machine::with_host(Arc::new(host));
+    let mut points = Points::new(3);
+    points.u.copy_from_slice(&[0.1, 0.5, 0.9]);
+    machine.shade(&group, &points);
+    for lane in 0..3 {
+        let of = |name: &str| machine.output(&group, name).unwrap().lane(lane);
+        assert_eq!(of("w"), Values::Floats(vec![0.5 + lane as f32]));
+        assert_eq!(of("c"), Values::Floats(vec![4.0, 5.0, 6.0]));
+        assert_eq!(of("n"), Values::Strings(vec!["b"]));
+        assert_eq!(of("missing"), Values::Ints(vec![7]));
+    }
+}

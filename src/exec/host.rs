@@ -99,6 +99,8 @@ pub struct AttributeRequest<'a> {
     pub name: &'a str,
     /// The type and how many numbers it has; only a value of this shape is an answer.
     pub ty: AttributeType,
+    /// The element that is asked for, of an array of such values; whoever answers may give all of the array.
+    pub element: Option<usize>,
     /// True when derivatives are read as well; floats only.
     pub slopes: bool,
     /// The points of the batch.
@@ -119,6 +121,7 @@ pub struct TraceRequest<'a> {
 /// Where the answer for an attribute goes, lane by lane. A lane without an answer has no such attribute.
 pub struct AttributeAnswer<'a> {
     pub(super) ty: AttributeType,
+    pub(super) element: Option<usize>,
     pub(super) lanes: &'a [usize],
     pub(super) found: &'a mut [i32],
     /// A column a number, then, when they are asked for, its derivatives along x and along y.
@@ -150,8 +153,19 @@ impl<'a> AttributeAnswer<'a> {
         }
     }
 
+    /// Of the values of an array those of the element that is asked for.
+    fn part<'v, T>(&self, values: &'v [T]) -> &'v [T] {
+        let count = self.ty.kind().1 as usize;
+        match self.element {
+            None => values,
+            Some(_) if count == 0 || !values.len().is_multiple_of(count) => &[],
+            Some(element) => values.chunks(count).nth(element).unwrap_or(&[]),
+        }
+    }
+
     /// Answers with floats in one lane.
     pub fn floats(&mut self, lane: usize, values: &[f32]) {
+        let values = self.part(values);
         if self.ty == AttributeType::Floats(values.len() as u32) {
             self.floats.iter_mut().zip(values).for_each(|(column, &value)| column[lane] = value);
             self.found[lane] = 1;
@@ -160,6 +174,7 @@ impl<'a> AttributeAnswer<'a> {
 
     /// Gives the derivatives of the floats in one lane, per pixel along the screen's x and y; without it they are zero.
     pub fn slopes(&mut self, lane: usize, dx: &[f32], dy: &[f32]) {
+        let (dx, dy) = (self.part(dx), self.part(dy));
         let AttributeType::Floats(count) = self.ty else { return };
         let count = count as usize;
         if self.floats.len() == 3 * count && dx.len() == count && dy.len() == count {
@@ -170,6 +185,7 @@ impl<'a> AttributeAnswer<'a> {
 
     /// Answers with ints in one lane.
     pub fn ints(&mut self, lane: usize, values: &[i32]) {
+        let values = self.part(values);
         if self.ty == AttributeType::Ints(values.len() as u32) {
             self.ints.iter_mut().zip(values).for_each(|(column, &value)| column[lane] = value);
             self.found[lane] = 1;
@@ -178,6 +194,7 @@ impl<'a> AttributeAnswer<'a> {
 
     /// Answers with strings in one lane.
     pub fn strings<T: AsRef<str>>(&mut self, lane: usize, values: &[T]) {
+        let values = self.part(values);
         if self.ty == AttributeType::Strings(values.len() as u32) {
             for (column, value) in self.ints.iter_mut().zip(values) {
                 let Symbol(number) = self.strings.symbol(value.as_ref());

@@ -85,24 +85,25 @@ impl Run<'_> {
         let mut rest = 0;
         while rest < open.len() {
             let args = Lane { run: self, src, lane: open[rest] };
-            let (object, name) = (args.i(0), args.i(1));
+            let asked = |args: &Lane| (args.i(0), args.i(1), if query.indexed { args.i(2) } else { 0 });
+            let first = asked(&args);
             // The lanes that ask the same come to the front.
             let mut end = rest;
             for at in rest..open.len() {
-                let args = Lane { run: self, src, lane: open[at] };
-                if (args.i(0), args.i(1)) == (object, name) {
+                if asked(&Lane { run: self, src, lane: open[at] }) == first {
                     open.swap(at, end);
                     end += 1;
                 }
             }
             open[rest..end].sort_unstable();
-            self.ask(query, dst, (object, name), &open[rest..end]);
+            self.ask(query, dst, first, &open[rest..end]);
             rest = end;
         }
         self.s.asked = open;
     }
 
-    fn ask(&mut self, query: AttributeQuery, dst: &[Reg], (object, name): (i32, i32), lanes: &[usize]) {
+    /// Asks for an attribute of an object by its name, and by the number of an element where one is asked for.
+    fn ask(&mut self, query: AttributeQuery, dst: &[Reg], (object, name, element): (i32, i32, i32), lanes: &[usize]) {
         let (kind, _) = query.ty.kind();
         let mut found = std::mem::take(&mut self.regs.ints[dst[0].0 as usize]);
         let (mut floats, mut ints) = (std::mem::take(&mut self.s.columns), std::mem::take(&mut self.s.int_columns));
@@ -125,11 +126,20 @@ impl Run<'_> {
             text.push_str(self.tree.strings.text(Symbol(symbol)));
         }
         let [object, name] = &names;
-        let asked = AttributeRequest { object, name, ty: query.ty, slopes: query.slopes, points: self.points };
+        // A number below 0 is one that no array has.
+        let element = query.indexed.then_some(usize::try_from(element).unwrap_or(usize::MAX));
+        let asked = AttributeRequest { object, name, ty: query.ty, element, slopes: query.slopes, points: self.points };
         let strings = &mut self.tree.strings;
         let (floats_out, ints_out) = (floats.as_mut_slice(), ints.as_mut_slice());
-        let mut answer =
-            AttributeAnswer { ty: query.ty, lanes, found: &mut found, floats: floats_out, ints: ints_out, strings };
+        let mut answer = AttributeAnswer {
+            ty: query.ty,
+            element,
+            lanes,
+            found: &mut found,
+            floats: floats_out,
+            ints: ints_out,
+            strings,
+        };
         match query.of {
             AttributeOf::Attribute => self.host.attribute(&asked, &mut answer),
             AttributeOf::Message => self.host.message(&asked, &mut answer),

@@ -11,6 +11,8 @@ pub struct AttributeQuery {
     pub slopes: bool,
     /// Who is asked for what.
     pub of: AttributeOf,
+    /// True when an element of an array is asked for, by its number after the name.
+    pub indexed: bool,
 }
 
 /// What is asked for by name.

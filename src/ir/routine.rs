@@ -268,7 +268,8 @@ impl Routine {
                 let rows = if attribute.slopes { 3 } else { 1 };
                 let slopes = if kind == Float { Slopes::Given } else { Slopes::None };
                 let gives = smallvec![(Int, 1), (kind, count.saturating_mul(rows))];
-                Declaration { slopes, reach: Reach::Lane, ..pure(smallvec![(String, 2)], gives) }
+                let takes = if attribute.indexed { smallvec![(String, 2), (Int, 1)] } else { smallvec![(String, 2)] };
+                Declaration { slopes, reach: Reach::Lane, ..pure(takes, gives) }
             }
             Routine::Texture(call) => {
                 let values = (call.channels + 1) * if call.slopes { 3 } else { 1 };

@@ -67,7 +67,7 @@ impl TextureFiles {
         Ok(Arc::new(texture))
     }
 
-    /// The text of a file that lies where textures do, such as a dictionary; nothing where it is none or longer than [`MOST_TEXT`].
+    /// The text of a file that lies where textures do, such as a dictionary; nothing where it is none or longer than 64 MB.
     pub fn text(&self, name: &str) -> Option<String> {
         let path = self.find(name)?;
         let short = std::fs::metadata(&path).is_ok_and(|about| about.len() <= MOST_TEXT);
@@ -82,7 +82,7 @@ impl TextureFiles {
 }
 
 /// The most bytes of a text.
-pub const MOST_TEXT: u64 = 64 << 20;
+const MOST_TEXT: u64 = 64 << 20;
 
 /// Half of the machine's memory where that can be told, else 4 GB.
 fn default_budget() -> u64 {

@@ -210,7 +210,12 @@ pub fn another(choice: &mut Choice) -> Routine {
             let count = number(choice);
             let ty = [AttributeType::Ints(count), AttributeType::Floats(count), AttributeType::Strings(count)]
                 [choice.below(3)];
-            Routine::Attribute(AttributeQuery { ty, slopes: choice.once_in(2), of: AttributeOf::Attribute })
+            Routine::Attribute(AttributeQuery {
+                ty,
+                slopes: choice.once_in(2),
+                of: AttributeOf::Attribute,
+                indexed: choice.once_in(3),
+            })
         }
         8 => Routine::Format(format(choice)),
         9 => {

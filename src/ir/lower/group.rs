@@ -65,7 +65,8 @@ impl Lower<'_> {
         if old.first().is_none_or(|&reg| self.b.program.kind(reg) == Kind::Closure) {
             return value;
         }
-        let query = AttributeQuery { ty: self.attribute_type(old), slopes: false, of: AttributeOf::Attribute };
+        let query =
+            AttributeQuery { ty: self.attribute_type(old), slopes: false, of: AttributeOf::Attribute, indexed: false };
         let asked = vec![self.symbol(""), self.symbol(name)];
         let results = self.b.call(Routine::Attribute(query), asked, self.span);
         let new = self.found_or(&results, old);

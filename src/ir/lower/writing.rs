@@ -57,7 +57,7 @@ impl Lower<'_> {
             let object = self.symbol("");
             inputs.insert(0, object);
         }
-        if let Some(known) = self.own_name(inputs[1]).filter(|_| strings == 1) {
+        if let Some(known) = self.own_name(inputs[1]).filter(|_| strings == 1 && inputs.len() == 2) {
             let old = self.load(out);
             let old = self.flat_regs(&old);
             if matches!(self.attribute_type(&old), AttributeType::Strings(1)) {
@@ -82,7 +82,8 @@ impl Lower<'_> {
 
     /// Asks the host for a value of the type of a place, and writes it there where it is found.
     pub(super) fn attribute_of(&mut self, of: AttributeOf, out: &Target, inputs: Vec<Reg>) -> Reg {
-        self.ask(out, inputs, |ty| Routine::Attribute(AttributeQuery { ty, slopes: false, of }))
+        let indexed = inputs.len() > 2;
+        self.ask(out, inputs, |ty| Routine::Attribute(AttributeQuery { ty, slopes: false, of, indexed }))
     }
 
     /// Writes registers to an output argument, element by element when it is an array.
