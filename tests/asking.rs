@@ -33,8 +33,9 @@ impl Host for Somewhere {
         }
     }
 
-    fn read_text(&self, name: &str) -> Option<String> {
-        (name == "list.xml").then(|| "<list><a v='1'/><a v='2'/></list>".to_owned())
+    fn read_text(&self, name: &str) -> Result<String, String> {
+        let known = (name == "list.xml").then(|| "<list><a v='1'/><a v='2'/></list>".to_owned());
+        known.ok_or_else(|| format!("there is no file `{name}`"))
     }
 }
 
@@ -173,7 +174,7 @@ fn dictionaries_are_searched_by_path() {
     let wrong = body(r#"printf("%d", dict_find("<a>", "//a"));"#, 1);
     assert!(wrong.starts_with("!this is no dictionary: ") && wrong.ends_with("|-1|"), "{wrong}");
     let missing = body(r#"printf("%d", dict_find("none.xml", "//a"));"#, 1);
-    assert!(missing.starts_with("!there is no dictionary `none.xml`: ") && missing.ends_with("|-1|"), "{missing}");
+    assert!(missing.starts_with("!there is no file `none.xml`") && missing.ends_with("|-1|"), "{missing}");
     let unread = body(r#"int k = dict_find("<a/>", "//[["); printf("%d", k);"#, 1);
     assert!(unread.starts_with("!`//[[` is no path: ") && unread.ends_with("|0|"), "{unread}");
 }

@@ -279,6 +279,11 @@ fn what_a_decoder_would_misread_is_refused() {
     let at = bits.windows(2).position(|tag| tag == 258u16.to_le_bytes()).unwrap();
     bits[at + 8] = 1;
     assert!(read_back("t.tif", &bits).unwrap_err().to_string().contains("1 bits a channel"));
+    // A small file that says it is large.
+    for samples in [4, 4000] {
+        let large = read_back("t.tif", &tiff(30_000, 30_000, samples, &[(284, 1)], &[0]));
+        assert!(large.unwrap_err().to_string().contains("MB, and textures may have"), "{samples}");
+    }
 }
 
 /// s and t span what is displayed, of which the data may be a part.
@@ -303,4 +308,44 @@ fn the_data_of_an_exr_may_be_a_part_of_it() {
     };
     assert_eq!((at(2.0, 1.0)[2], at(3.0, 0.0)[2], at(7.0, 1.0)[2]), (0.0, 0.0, 0.0));
     assert_eq!((at(3.0, 1.0)[..3].to_vec(), at(6.0, 2.0)[..3].to_vec()), (vec![0.0, 0.5, 1.0], vec![0.3, 0.6, 1.0]));
+}
+
+/// A host of one texture of any name.
+struct Holding(Arc<Texture>);
+
+impl Host for Holding {
+    fn texture(&self, _name: &str) -> Result<Arc<Texture>, String> {
+        Ok(self.0.clone())
+    }
+}
+
+/// Look-ups of all lanes at once are those of each lane alone, which an option that varies asks for.
+#[test]
+fn batches_give_the_bits_of_single_look_ups() {
+    let texture = Arc::new(painted(13, 9, 3, |s, t, c| s * t + 0.3 * c as f32 - 0.2 * s));
+    let options = r#""wrap", "mirror", "firstchannel", first, "fill", .25, "alpha", a"#;
+    let call = |width: &str| {
+        format!(
+            r#"shader s(int first = 0, output color c = 0, output float a = 0) {{
+            float wide = {width};
+            if (u > .2) c = texture("t", 3 * u - 1, 2 * v, .1 * u, .02, .01, .2 * v, "width", wide, {options}); }}"#
+        )
+    };
+    for first in 0..4 {
+        let answers = ["1", "1 + 0 * floor(u)"].map(|width| {
+            let shader = compile(&call(width)).unwrap();
+            let group = shader.group().bind("first", velour::ir::lower::Binding::Numbers(vec![f64::from(first)]));
+            let group = group.unoptimized().keep_outputs().build().unwrap();
+            let mut machine = Machine::with_host(Arc::new(Holding(texture.clone())));
+            let mut points = Points::new(64);
+            for lane in 0..64 {
+                (points.u[lane], points.v[lane]) = (lane as f32 / 63.0, (lane * 29 % 64) as f32 / 63.0);
+            }
+            machine.shade(&group, &points);
+            let of = |name: &str, lane: usize| format!("{:?}", machine.output(&group, name).unwrap().lane(lane));
+            (0..64).map(|lane| of("c", lane) + &of("a", lane)).collect::<Vec<_>>()
+        });
+        assert_eq!(answers[0], answers[1], "{first}");
+        assert!(answers[0][10] != answers[0][40], "{:?}", answers[0]);
+    }
 }

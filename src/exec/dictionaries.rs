@@ -6,7 +6,7 @@ use super::report::Mistake;
 use super::run::Run;
 use crate::ir::op::AttributeType;
 use crate::ir::program::Reg;
-use crate::ops::dictionary::{Dictionary, is_path};
+use crate::ops::dictionary::Dictionary;
 use std::sync::Arc;
 use velour_grammar::Span;
 
@@ -21,13 +21,9 @@ impl Run<'_> {
             self.report_once(lane, span, Mistake::Other, message);
             return None;
         }
-        let read = if text.trim_start().starts_with('<') { Some(text.to_owned()) } else { self.host.read_text(text) };
-        let parsed = match &read {
-            Some(read) => Dictionary::parse(read).map_err(|reason| format!("this is no dictionary: {reason}")),
-            None => Err(format!(
-                "there is no dictionary `{text}`: neither a text that begins with `<` nor a file that can be read"
-            )),
-        };
+        let read = if text.trim_start().starts_with('<') { Ok(text.to_owned()) } else { self.host.read_text(text) };
+        let parsed =
+            read.and_then(|read| Dictionary::parse(&read).map_err(|reason| format!("this is no dictionary: {reason}")));
         let found = match parsed {
             Ok(dictionary) => {
                 self.s.dictionaries.parsed.push(dictionary);
@@ -60,11 +56,14 @@ impl Run<'_> {
         lists[lane].len() as i32
     }
 
-    fn check_path(&mut self, path: &str, lane: usize, span: Span) {
-        if !is_path(path) {
+    /// The number of what a path finds from a node of a dictionary.
+    fn search(&mut self, (dictionary, node): (usize, usize), path: &str, lane: usize, span: Span) -> i32 {
+        let Some(nodes) = self.s.dictionaries.parsed[dictionary].find(node, path) else {
             let text = format!("`{path}` is no path: write names with / or // before them, and conditions in []");
             self.report_once(lane, span, Mistake::Other, text);
-        }
+            return 0;
+        };
+        self.keep(lane, dictionary, nodes.into(), 0, span)
     }
 
     fn found(&self, lane: usize, number: i32) -> Option<&Found> {
@@ -81,11 +80,7 @@ impl Run<'_> {
             let args = Lane { run: self, src, lane };
             let (text, path) = (args.s(0).to_owned(), args.s(1).to_owned());
             let number = match self.dictionary(&text, lane, span) {
-                Some(dictionary) => {
-                    self.check_path(&path, lane, span);
-                    let nodes = self.s.dictionaries.parsed[dictionary].find(0, &path);
-                    self.keep(lane, dictionary, nodes.into(), 0, span)
-                }
+                Some(dictionary) => self.search((dictionary, 0), &path, lane, span),
                 None => -1,
             };
             self.regs.ints[dst.0 as usize][lane] = number;
@@ -101,11 +96,7 @@ impl Run<'_> {
             let args = Lane { run: self, src, lane };
             let below = self.found(lane, args.i(0)).map(|found| (found.dictionary, found.nodes[found.at]));
             let path = args.s(1).to_owned();
-            self.check_path(&path, lane, span);
-            let number = below.map_or(0, |(dictionary, node)| {
-                let nodes = self.s.dictionaries.parsed[dictionary].find(node, &path);
-                self.keep(lane, dictionary, nodes.into(), 0, span)
-            });
+            let number = below.map_or(0, |from| self.search(from, &path, lane, span));
             self.regs.ints[dst.0 as usize][lane] = number;
         }
     }

@@ -51,9 +51,11 @@ pub trait Host: Send + Sync {
     }
 
     /// The text of a file that a shader names as its dictionary; by default there are no files.
-    fn read_text(&self, name: &str) -> Option<String> {
-        let _ = name;
-        None
+    ///
+    /// # Errors
+    /// One clause for the person who wrote the shader.
+    fn read_text(&self, name: &str) -> Result<String, String> {
+        Err(format!("there is no file `{name}`: this host has none"))
     }
 
     /// Is the label of a closure of this name written where it has none? By default no label is.

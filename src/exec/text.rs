@@ -1,5 +1,6 @@
 //! Printing and formatting, lane by lane. What a batch prints comes out in lane order, whatever the order of execution.
 
+use super::lane::Lane;
 use super::report::{Mistake, Report, ReportKind, ReportPlace};
 use super::run::Run;
 use crate::closure::print::closure_text;
@@ -106,9 +107,7 @@ impl Run<'_> {
                 self.report_once(lane, span, Mistake::Other, MISFIT.to_owned());
             }
             if to == PrintTo::UnknownNoise {
-                let column = self.regs.i(values[0]);
-                let name = if column.len() == 1 { column[0] } else { column[lane] };
-                let name = self.symbol_text(name).to_owned();
+                let name = Lane { run: self, src: values, lane }.s(0).to_owned();
                 self.report_once(lane, span, Mistake::Noise { name }, text);
                 continue;
             }

@@ -116,7 +116,7 @@ impl Run<'_> {
         }
         let places = [1, 2, 3, 4, 5, 6].map(|k| self.regs.f(src[k]));
         values(&texture, &places, &how.lookup, &self.s.mask[..self.n], &mut out[..count]);
-        if how.lookup.first as usize + n >= texture.channels() {
+        if covers(&texture, &how.lookup, n) {
             out[n].iter_mut().zip(&self.s.mask).filter(|(_, lit)| **lit != 0).for_each(|(value, _)| *value = 1.0);
         }
         for (column, reg) in out.iter_mut().zip(&dst[..count]) {
@@ -209,6 +209,8 @@ impl Run<'_> {
     }
 
     /// What is known of a texture, by the names that OSL gives; false for what is not known as this type.
+    ///
+    /// Differs from OSL: the data window is the display window, in which the data of a file have been placed.
     fn put_info(&mut self, ty: AttributeType, dst: &[Reg], lane: usize, name: &str, texture: Option<&Texture>) -> bool {
         if name == "exists" && ty == AttributeType::Ints(1) {
             self.regs.ints[dst[0].0 as usize][lane] = i32::from(texture.is_some());
@@ -273,6 +275,11 @@ fn around(args: &Lane) -> ([f32; 2], [f32; 4]) {
     (here, [a, b, c, d])
 }
 
+/// Is there no channel after those that are wanted? Such a texture covers everything.
+fn covers(texture: &Texture, lookup: &Lookup, channels: usize) -> bool {
+    lookup.first as usize + channels >= texture.channels()
+}
+
 /// The channels and alpha of a look-up, and how they change along x and y.
 fn sampled(
     texture: &Texture,
@@ -281,8 +288,7 @@ fn sampled(
     how: &How,
     (n, changes): (usize, bool),
 ) -> ([f32; 4], [f32; 4], [f32; 4]) {
-    // A texture without the channel after those that are wanted covers everything.
-    let covers = how.lookup.first as usize + n >= texture.channels();
+    let covers = covers(texture, &how.lookup, n);
     if !changes && how.space.is_none() {
         let mut value = texture.value(place[0], place[1], slopes, &how.lookup);
         if covers {

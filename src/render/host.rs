@@ -90,7 +90,7 @@ impl Host for RenderHost {
         self.textures.get(name).map_err(|error| error.to_string())
     }
 
-    fn read_text(&self, name: &str) -> Option<String> {
+    fn read_text(&self, name: &str) -> Result<String, String> {
         self.textures.text(name)
     }
 }

@@ -80,6 +80,7 @@ mod smooth;
 mod stages;
 mod through;
 mod tile;
+mod told;
 mod trace;
 mod wave;
 mod world;

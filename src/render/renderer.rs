@@ -58,6 +58,8 @@ pub struct Renderer {
     /// Each thread's memory.
     waves: Vec<Mutex<Option<Wave>>>,
     gathered: Mutex<Gathered>,
+    /// What shaders said when surfaces were moved.
+    said_moving: Vec<Report>,
     seconds_preparing: f64,
 }
 
@@ -116,13 +118,14 @@ impl Renderer {
             let (scene, reports) = displaced(scene, settings)?;
             let accel = Arc::new(Accel::new(&scene.geometry));
             let mut world = World::new(accel, scene, settings.clone(), None);
-            world.reports.extend(reports);
-            Ok(world)
+            world.reports.extend(reports.iter().cloned());
+            Ok((world, reports))
         };
-        let world = pool.install(make)?;
+        let (world, said_moving) = pool.install(make)?;
         Ok(Renderer {
             waves: empty_waves(&pool),
             gathered: Mutex::new(Gathered::new(&world, start)),
+            said_moving,
             seconds_preparing: start.elapsed().as_secs_f64(),
             world,
             pool,
@@ -295,6 +298,7 @@ impl Renderer {
         let start = Instant::now();
         let accel = self.world.accel.clone();
         self.world = self.pool.install(|| World::new(accel, scene, settings, sky));
+        self.world.reports.extend(self.said_moving.iter().cloned());
         self.seconds_preparing = start.elapsed().as_secs_f64();
         self.waves = empty_waves(&self.pool);
         self.gathered = Mutex::new(Gathered::new(&self.world, start));

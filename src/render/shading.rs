@@ -1,16 +1,13 @@
 //! The only door from the renderer to shaders and closures: a batch of points in, emission, light and directions out.
 
 use super::smooth::Smooth;
+use super::told::Told;
 use crate::closure::tree::Tree;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::exec::{Group, Host, Machine, Points, Report};
 use crate::math::columns::Column3;
 use glam::Vec3;
-use std::collections::HashSet;
 use std::sync::Arc;
-
-/// How many different reports a thread keeps: a shader that prints at every point would fill all memory.
-const MOST_REPORTS: usize = 1000;
 
 /// One thread's shader, lobes and columns.
 pub struct Shading {
@@ -34,7 +31,7 @@ pub struct Shading {
     failed: bool,
     nothing: Tree,
     /// All reports so far, as text.
-    told: HashSet<String>,
+    told: Told,
 }
 
 impl Shading {
@@ -53,7 +50,7 @@ impl Shading {
             reports: Vec::new(),
             failed: false,
             nothing: Tree::default(),
-            told: HashSet::new(),
+            told: Told::default(),
         }
     }
 
@@ -95,7 +92,7 @@ impl Shading {
         for report in news {
             let fatal = report.is_fatal();
             self.failed |= fatal;
-            if self.told.len() < MOST_REPORTS && self.told.insert(report.key()) || fatal {
+            if self.told.is_new(&report) {
                 self.reports.push(report);
             }
         }
@@ -148,7 +145,7 @@ impl Shading {
     /// Reports something about the render itself, once.
     pub fn warn(&mut self, text: String) {
         let report = Report::warning(text);
-        if self.told.len() < MOST_REPORTS && self.told.insert(report.key()) {
+        if self.told.is_new(&report) {
             self.reports.push(report);
         }
     }

@@ -78,7 +78,7 @@ fn sized(width: usize, height: usize, bytes: usize, budget: u64) -> Result<(), S
     if width == 0 || height == 0 || width > MOST || height > MOST {
         return Err(format!("it has {width} x {height} texels"));
     }
-    let all = width as u64 * height as u64 * bytes as u64;
+    let all = (width as u64 * height as u64).saturating_mul(bytes as u64);
     if all > budget {
         Err(format!("it takes {} MB, and textures may have {} MB", all >> 20, budget >> 20))
     } else {
@@ -121,7 +121,9 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
     loop {
         let (width, height) = decoder.dimensions().map_err(failed)?;
         let (width, height) = (width as usize, height as usize);
-        sized(width, height, 4, budget)?;
+        let layout = TiffLayout::of(&mut decoder)?;
+        let left = levels.iter().fold(budget, |left, level| left.saturating_sub(level.bytes() as u64));
+        sized(width, height, layout.bytes, left)?;
         if let Some(last) = levels.last()
             && (width != (last.width() / 2).max(1) || height != (last.height() / 2).max(1))
         {
@@ -130,7 +132,6 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
         if levels.is_empty() {
             wrap = tiff_wrap(&mut decoder);
         }
-        let layout = TiffLayout::of(&mut decoder)?;
         let mut all = DecodingResult::U8(Vec::new());
         let whole = decoder.read_image_to_buffer(&mut all).map_err(failed)?;
         if all.as_buffer(0).as_bytes().len() < whole.complete_len {
@@ -166,6 +167,8 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
 /// How the numbers of a TIFF lie.
 struct TiffLayout {
     samples: usize,
+    /// Of one texel.
+    bytes: usize,
     /// Channels one after the other, each of the whole picture.
     planar: bool,
 }
@@ -175,7 +178,7 @@ impl TiffLayout {
     fn of<R: std::io::Read + std::io::Seek>(decoder: &mut tiff::decoder::Decoder<R>) -> Result<Self, String> {
         use tiff::tags::Tag;
         let mut number = |tag: Tag, otherwise: u32| match decoder.find_tag_unsigned_vec::<u32>(tag) {
-            Ok(Some(numbers)) => numbers.first().copied().unwrap_or(otherwise),
+            Ok(Some(numbers)) => numbers.iter().copied().max().unwrap_or(otherwise),
             _ => otherwise,
         };
         let samples = number(Tag::SamplesPerPixel, 1) as usize;
@@ -187,7 +190,7 @@ impl TiffLayout {
         if samples > 4 && !planar && number(Tag::Predictor, 1) != 1 {
             return Err(format!("it is compressed with a predictor over {samples} channels, and 4 are the most"));
         }
-        Ok(TiffLayout { samples, planar })
+        Ok(TiffLayout { samples, bytes: samples * bits.div_ceil(8) as usize, planar })
     }
 
     /// The numbers of one texel side by side, and how many they are.
@@ -262,12 +265,12 @@ fn read_exr(path: &Path, budget: u64) -> Result<Texture, String> {
     let offset = [data.0 - whole.position.0, data.1 - whole.position.1];
     let display = [whole.size.0, whole.size.1];
     let part = (offset, display) != ([0; 2], size);
-    if part {
-        sized(display[0], display[1], 4, budget)?;
-    }
     let mut channels: Vec<_> = layer.channel_data.list.into_iter().collect();
     channels.sort_by_key(|channel| rank(&channel.name.to_string()));
     let count = channels.len();
+    if part {
+        sized(display[0], display[1], 4 * count.max(1), budget)?;
+    }
     let pyramids: Vec<Vec<exr::FlatSamples>> = channels
         .into_iter()
         .map(|channel| match channel.sample_data {

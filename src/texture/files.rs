@@ -3,6 +3,7 @@
 use super::file::{TextureError, read};
 use super::pyramid::Texture;
 use std::collections::HashMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
@@ -67,11 +68,19 @@ impl TextureFiles {
         Ok(Arc::new(texture))
     }
 
-    /// The text of a file that lies where textures do, such as a dictionary; nothing where it is none or longer than 64 MB.
-    pub fn text(&self, name: &str) -> Option<String> {
-        let path = self.find(name)?;
-        let short = std::fs::metadata(&path).is_ok_and(|about| about.len() <= MOST_TEXT);
-        short.then(|| std::fs::read_to_string(path).ok()).flatten()
+    /// The text of a file that lies where textures do, such as a dictionary.
+    ///
+    /// # Errors
+    /// One clause: it is not there, no text, or longer than 64 MB.
+    pub fn text(&self, name: &str) -> Result<String, String> {
+        let path = self.find(name).ok_or_else(|| format!("there is no file `{name}`"))?;
+        let unread = |reason: std::io::Error| format!("`{}` cannot be read: {reason}", path.display());
+        let mut text = String::new();
+        std::fs::File::open(&path).map_err(unread)?.take(MOST_TEXT + 1).read_to_string(&mut text).map_err(unread)?;
+        if text.len() as u64 > MOST_TEXT {
+            return Err(format!("`{}` is longer than {} MB", path.display(), MOST_TEXT >> 20));
+        }
+        Ok(text)
     }
 
     fn find(&self, name: &str) -> Option<PathBuf> {

@@ -1,9 +1,10 @@
 //! Looking a texture up: the ellipse that a pixel covers, probes along its long axis, and two levels of the pyramid.
 //!
-//! Decision (2026-11-29): probes with the weights of a Gaussian along the long axis (McCormack, Perry, Farkas and Jouppi 1999, and as
-//! OpenImageIO has them), each of them bilinear in two levels that follow the short axis, and bicubic in the finest, because against a Gaussian over the ellipse summed in f64 the error of
-//! oblique stripes is a small part of that of one trilinear probe, which blurs by the long axis, and a look-up that is not oblique costs
-//! one probe; instead of summing every texel of the ellipse (Heckbert 1989), whose cost grows with the ellipse.
+//! Decision (2026-11-29): probes with the weights of a Gaussian along the long axis (McCormack, Perry, Farkas and Jouppi 1999,
+//! and as OpenImageIO has them), each of them bilinear in two levels that follow the short axis, and bicubic in the finest,
+//! because against a Gaussian over the ellipse summed in f64 the error of oblique stripes is a small part of that of one
+//! trilinear probe, which blurs by the long axis, and a look-up that is not oblique costs one probe; instead of summing every
+//! texel of the ellipse (Heckbert 1989), whose cost grows with the ellipse.
 
 use super::pyramid::Texture;
 use super::texels::Level;

@@ -189,13 +189,35 @@ fn displacement_is_a_ray_type_of_its_own() {
 fn what_cannot_be_moved_is_told() {
     let settings = Settings { width: 8, height: 8, samples: 1, ..Settings::default() };
     let moves = "displacement move() { P = 0; }";
-    let fine = r#"<Sphere center="0,0,0" radius="1" resolution="4294967295"/>"#;
-    let error = render(&scene_with(&scene(fine, moves), &[GREY, WHITE, moves]), &settings, &Silent).unwrap_err();
-    assert!(error.to_string().contains("give spheres and quads a smaller `resolution`"), "{error}");
+    let ball = r#"<Sphere center="0,0,0" radius="1" resolution="4294967295"/>"#;
+    let board = r#"<Quad corner="-1,-1,0" edge_x="2,0,0" edge_y="0,2,0" resolution="1"/>"#;
+    for fine in [ball.to_owned(), format!("{ball}{board}"), format!("{ball}{ball}")] {
+        let error = render(&scene_with(&scene(&fine, moves), &[GREY, WHITE, moves]), &settings, &Silent).unwrap_err();
+        assert!(error.to_string().contains("give spheres and quads a smaller `resolution`"), "{error}");
+    }
     let image = picture(r#"<Sphere center="0,0,0" radius="1"/>"#, moves);
     let told: Vec<String> = image.about.reports.iter().map(ToString::to_string).collect();
     assert!(told.iter().any(|text| text.contains("triangles no area; they are left out")), "{told:?}");
     let alone = scene("", moves).replace(r#"<ShaderGroup name="it">shader grey l1;</ShaderGroup>"#, "");
     let warnings = scene_with(&alone, &[GREY, WHITE, moves]).warnings;
     assert!(warnings.iter().any(|text| text.contains("displacement group `it` is alone")), "{warnings:?}");
+}
+
+/// What displacement has said is said again after a change, and prints of every corner do not fill memory.
+#[test]
+fn what_shaders_say_meanwhile_is_kept() {
+    let ball = r#"<Sphere center="0,0,0" radius="1" resolution="32"/>"#;
+    let moves = r#"displacement move() { printf("at %g\\n", P); warning("moving"); P += .1 * N; }"#;
+    let scene = scene_with(&scene(ball, moves), &[GREY, WHITE, moves]);
+    let settings = Settings { width: 8, height: 8, samples: 1, ..Settings::default() };
+    let mut renderer = Renderer::new(&scene, &settings).unwrap();
+    for change in 0..2 {
+        if change == 1 {
+            renderer.set_camera(scene.camera).unwrap();
+        }
+        renderer.finish(&Silent).unwrap();
+        let told: Vec<String> = renderer.picture().about.reports.iter().map(ToString::to_string).collect();
+        assert!(told.iter().any(|text| text.contains("moving")), "{change}: {told:?}");
+        assert!((900..=1100).contains(&told.len()), "{}", told.len());
+    }
 }

@@ -6,12 +6,10 @@ pub fn expected(name: &str, args: &[&[f64]], components: usize) -> Option<Vec<f6
         return Some(whole);
     }
     let at = |k: usize, c: usize| args.get(k).map_or(0.0, |arg| if arg.len() == 1 { arg[0] } else { arg[c] });
-    (0..components)
-        .map(|c| by_component(name, args.len(), [at(0, c), at(1, c), at(2, c), at(3, c), at(4, c)]))
-        .collect()
+    (0..components).map(|c| by_component(name, args.len(), [at(0, c), at(1, c), at(2, c), at(3, c)])).collect()
 }
 
-fn by_component(name: &str, count: usize, [x, y, z, w, q]: [f64; 5]) -> Option<f64> {
+fn by_component(name: &str, count: usize, [x, y, z, w]: [f64; 4]) -> Option<f64> {
     let unit = |low: f64, high: f64, x: f64| ((x - low) / (high - low)).clamp(0.0, 1.0);
     let truth = |b: bool| f64::from(u8::from(b));
     Some(match (name, count) {
@@ -73,7 +71,6 @@ fn by_component(name: &str, count: usize, [x, y, z, w, q]: [f64; 5]) -> Option<f
                 x
             }
         }
-        ("luminance", 1) if q == 0.0 => return None,
         _ => return None,
     })
 }

@@ -121,7 +121,7 @@ impl Host for PatchHost {
         })
     }
 
-    fn read_text(&self, name: &str) -> Option<String> {
+    fn read_text(&self, name: &str) -> Result<String, String> {
         self.textures.text(name)
     }
 

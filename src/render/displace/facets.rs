@@ -34,11 +34,7 @@ pub fn add_facets(from: &Geometry, number: usize, to: &mut Geometry) {
     let primitive = from.primitives[number];
     let [around, down] = steps(from, number);
     match primitive.shape {
-        Shape::Triangle { .. } => {
-            let normals = kept(&from.normals, primitive.normals, &mut to.normals);
-            let uvs = kept(&from.uvs, primitive.uvs, &mut to.uvs);
-            to.primitives.push(Primitive { normals, uvs, ..primitive });
-        }
+        Shape::Triangle { .. } => add_as_it_is(from, number, to),
         Shape::Quad { corner, edge_x, edge_y } => {
             let normal = edge_x.cross(edge_y).normalize_or(Vec3::Y);
             let at = |u: u32, v: u32| {
@@ -63,6 +59,14 @@ pub fn add_facets(from: &Geometry, number: usize, to: &mut Geometry) {
             add_grid(to, primitive.object, [around, down], at);
         }
     }
+}
+
+/// Adds a primitive as it is.
+pub fn add_as_it_is(from: &Geometry, number: usize, to: &mut Geometry) {
+    let primitive = from.primitives[number];
+    let normals = kept(&from.normals, primitive.normals, &mut to.normals);
+    let uvs = kept(&from.uvs, primitive.uvs, &mut to.uvs);
+    to.primitives.push(Primitive { normals, uvs, ..primitive });
 }
 
 struct Corner {

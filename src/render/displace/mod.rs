@@ -19,13 +19,13 @@ use super::points::fill;
 use super::probe::probe;
 use super::segment::{Segment, ray_type};
 use super::settings::Settings;
+use super::told::Told;
 use crate::exec::{Group, Host, MAX_LANES, Machine, Points, Report, ReportPlace, Values};
 use crate::scene::{Geometry, Material, Place, Primitive, Scene, Shape};
-use facets::{MOST_FACETS, add_facets, facets_of};
+use facets::{MOST_FACETS, add_as_it_is, add_facets, facets_of};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use smallvec::SmallVec;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// The scene with its surfaces moved, where something moves them, and what shaders said meanwhile.
@@ -42,7 +42,7 @@ pub fn displaced(scene: &Scene, settings: &Settings) -> Result<(Scene, Vec<Repor
     }
     let primitives = scene.geometry.primitives.iter().enumerate();
     let facets = primitives.filter(|(_, p)| moved[p.object as usize]).map(|(at, _)| facets_of(&scene.geometry, at));
-    let facets: u64 = facets.sum();
+    let facets = facets.fold(0, u64::saturating_add);
     if facets > MOST_FACETS {
         return Err(RenderError::Facets { facets, most: MOST_FACETS });
     }
@@ -61,20 +61,10 @@ pub fn displaced(scene: &Scene, settings: &Settings) -> Result<(Scene, Vec<Repor
 fn in_facets(from: &Geometry, moved: &[bool]) -> Geometry {
     let mut to = Geometry { objects: from.objects.clone(), ..Geometry::default() };
     for (number, primitive) in from.primitives.iter().enumerate() {
-        if moved[primitive.object as usize] {
-            add_facets(from, number, &mut to);
-            continue;
+        match moved[primitive.object as usize] {
+            true => add_facets(from, number, &mut to),
+            false => add_as_it_is(from, number, &mut to),
         }
-        let [mut normals, mut uvs] = [Primitive::NONE; 2];
-        if let Some(three) = from.normals.get(primitive.normals as usize) {
-            normals = to.normals.len() as u32;
-            to.normals.push(*three);
-        }
-        if let Some(three) = from.uvs.get(primitive.uvs as usize) {
-            uvs = to.uvs.len() as u32;
-            to.uvs.push(*three);
-        }
-        to.primitives.push(Primitive { normals, uvs, ..*primitive });
     }
     to
 }
@@ -95,25 +85,25 @@ fn targets(
     }
     let mut materials: Vec<_> = of_material.into_iter().collect();
     materials.sort_unstable_by_key(|(material, _)| *material);
-    let (mut out, mut reports) = (vec![None; geometry.primitives.len()], Vec::new());
+    let (mut out, mut reports, mut told) = (vec![None; geometry.primitives.len()], Vec::new(), Told::default());
     for (material, primitives) in materials {
         let material = &scene.materials[material as usize];
         let Some(group) = &material.displacement else { continue };
-        let batches: Vec<_> = primitives
-            .par_chunks(MAX_LANES / 3)
-            .map_init(
+        let mut lost = 0;
+        for wave in primitives.chunks(WAVE * (MAX_LANES / 3)) {
+            let batches = wave.par_chunks(MAX_LANES / 3).map_init(
                 || Batch { machine: Machine::with_host(host.clone()), points: Points::default() },
                 |batch, primitives| batch.shade(group, geometry, primitives, scene.camera.eye),
-            )
-            .collect();
-        let mut lost = 0;
-        for (primitives, (corners, said)) in primitives.chunks(MAX_LANES / 3).zip(batches) {
-            for (&number, sent) in primitives.iter().zip(corners) {
-                let kept = corners_of(&geometry.primitives[number as usize].shape);
-                lost += sent.iter().filter(|p| !p.is_finite()).count();
-                out[number as usize] = Some([0, 1, 2].map(|k| if sent[k].is_finite() { sent[k] } else { kept[k] }));
+            );
+            let batches: Vec<_> = batches.collect();
+            for (primitives, (corners, said)) in wave.chunks(MAX_LANES / 3).zip(batches) {
+                for (&number, sent) in primitives.iter().zip(corners) {
+                    let kept = corners_of(&geometry.primitives[number as usize].shape);
+                    lost += sent.iter().filter(|p| !p.is_finite()).count();
+                    out[number as usize] = Some([0, 1, 2].map(|k| if sent[k].is_finite() { sent[k] } else { kept[k] }));
+                }
+                reports.extend(said.into_iter().filter(|report| told.is_new(report)));
             }
-            reports.extend(said);
         }
         if lost > 0 {
             let text = format!("displacement group `{}` sends {lost} corners nowhere; they stay", material.name);
@@ -123,6 +113,9 @@ fn targets(
     }
     (out, reports)
 }
+
+/// Batches that are shaded before what they say is looked through.
+const WAVE: usize = 256;
 
 /// One thread's scratch.
 struct Batch {
@@ -183,23 +176,19 @@ fn bits(v: Vec3) -> [u32; 3] {
 /// What lies at one place of one element.
 type At = (u32, [u32; 3]);
 
-/// Where a corner is sent, each place once.
-type Sent = SmallVec<[Vec3; 2]>;
-
 /// Moves the corners, also those of triangles of the same element that no shader moves but which share them; then makes smooth normals
 /// and areas anew. Gives how many triangles have lost their area.
 fn move_corners(geometry: &mut Geometry, moved: &[bool], targets: &[Option<[Vec3; 3]>]) -> usize {
     let elements = elements(geometry);
     let before = areas(geometry);
     let element = |primitive: &Primitive| elements[primitive.object as usize];
-    let mut sent: HashMap<At, Sent> = HashMap::new();
+    // The sum of the different places that a corner is sent to, and how many they are.
+    let mut sent: HashMap<At, (DVec3, f64)> = HashMap::new();
+    let mut seen: HashSet<(At, [u32; 3])> = HashSet::new();
     let mut send = |at: At, to: Vec3, only_known: bool| {
-        if only_known && !sent.contains_key(&at) {
-            return;
-        }
-        let places = sent.entry(at).or_default();
-        if !places.iter().any(|known| bits(*known) == bits(to)) {
-            places.push(to);
+        if (!only_known || sent.contains_key(&at)) && seen.insert((at, bits(to))) {
+            let (sum, count) = sent.entry(at).or_default();
+            (*sum, *count) = (*sum + to.as_dvec3(), *count + 1.0);
         }
     };
     let still = |primitive: &Primitive| matches!(primitive.shape, Shape::Triangle { .. });
@@ -214,26 +203,28 @@ fn move_corners(geometry: &mut Geometry, moved: &[bool], targets: &[Option<[Vec3
             from.into_iter().zip(to).for_each(|(from, to)| send((element(primitive), bits(from)), to, only_known));
         }
     }
-    let mean = |places: &Sent| {
-        let sum: DVec3 = places.iter().map(|place| place.as_dvec3()).sum();
-        (sum / places.len() as f64).as_vec3()
-    };
+    let mean = |(sum, count): &(DVec3, f64)| (*sum / *count).as_vec3();
     let moved_to = |primitive: &Primitive| {
         corners_of(&primitive.shape).map(|p| sent.get(&(element(primitive), bits(p))).map_or(p, mean))
     };
     let shapes: Vec<Option<[Vec3; 3]>> =
         geometry.primitives.iter().map(|primitive| still(primitive).then(|| moved_to(primitive))).collect();
     smooth(geometry, &elements, &shapes);
-    for (primitive, corners) in geometry.primitives.iter_mut().zip(&shapes) {
-        if let Some([a, b, c]) = *corners {
-            primitive.shape = Shape::Triangle { a, b, c };
+    let (mut touched, mut lost) = (moved.to_vec(), 0);
+    let mut shapes = shapes.into_iter();
+    geometry.primitives.retain_mut(|primitive| {
+        let Some([a, b, c]) = shapes.next().flatten() else { return true };
+        if [a, b, c] == corners_of(&primitive.shape) {
+            return true;
         }
-    }
-    let all = geometry.primitives.len();
-    let sound = |p: &Primitive| p.shape.area() > 0.0 && p.shape.area().is_finite();
-    geometry.primitives.retain(|p| !moved[p.object as usize] || sound(p));
-    measure(geometry, &elements, &before);
-    all - geometry.primitives.len()
+        primitive.shape = Shape::Triangle { a, b, c };
+        touched[primitive.object as usize] = true;
+        let (area, before) = (primitive.shape.area(), lost);
+        lost += usize::from(!(area > 0.0 && area.is_finite()));
+        lost == before
+    });
+    measure(geometry, &elements, &before, &touched);
+    lost
 }
 
 /// A number for each object, the same for those of one element of the scene.
@@ -294,21 +285,24 @@ fn areas(geometry: &Geometry) -> Vec<f64> {
     areas
 }
 
-/// Makes the areas of objects anew that have changed since `before`; objects that shared one, as the parts of a mesh do, share the new one.
-fn measure(geometry: &mut Geometry, elements: &[u32], before: &[f64]) {
+/// Makes the areas of `touched` objects anew, of which `before` are those of their own primitives; objects that shared one, as the parts
+/// of a mesh do, share the new one.
+fn measure(geometry: &mut Geometry, elements: &[u32], before: &[f64], touched: &[bool]) {
     let now = areas(geometry);
-    let shares = |number: usize, stated: f32| (before[number] / f64::from(stated) - 1.0).abs() > 1e-4;
     let key = |number: usize, stated: f32| (elements[number], stated.to_bits());
-    let mut together: HashMap<(u32, u32), [f64; 2]> = HashMap::new();
-    for (number, object) in geometry.objects.iter().enumerate().filter(|(n, object)| shares(*n, object.surface_area)) {
-        let [old, new] = together.entry(key(number, object.surface_area)).or_default();
-        (*old, *new) = (*old + before[number], *new + now[number]);
+    let mut together: HashMap<(u32, u32), (f64, f64, bool)> = HashMap::new();
+    for (number, object) in geometry.objects.iter().enumerate() {
+        let (old, new, any) = together.entry(key(number, object.surface_area)).or_default();
+        (*old, *new, *any) = (*old + before[number], *new + now[number], *any || touched[number]);
     }
     for (number, object) in geometry.objects.iter_mut().enumerate() {
-        let whole = together.get(&key(number, object.surface_area)).filter(|_| shares(number, object.surface_area));
-        let [old, new] = whole.copied().unwrap_or([before[number], now[number]]);
-        if old != new {
-            object.surface_area = new as f32;
+        let (old, new, any) = together.get(&key(number, object.surface_area)).copied().unwrap_or_default();
+        // Others of one element may have the same area by chance.
+        let shares = (old / f64::from(object.surface_area) - 1.0).abs() < 1e-4;
+        match (shares, any, touched[number]) {
+            (true, true, _) => object.surface_area = new as f32,
+            (false, _, true) => object.surface_area = now[number] as f32,
+            _ => {}
         }
     }
 }

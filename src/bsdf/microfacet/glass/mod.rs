@@ -8,7 +8,8 @@
 //! angle that is 1, and elsewhere smoother than the albedo itself.
 //!
 //! Decision (2026-11-29): tables over width and cosine, one for each of some indices, made when a scene asks for their
-//! neighbourhood, because a scene has a few indices and one table takes some 35 ms, of Beckmann's facets 260 ms; instead of one over all indices.
+//! neighbourhood, because a scene has a few indices and one table takes some 35 ms, of Beckmann's facets 260 ms; instead of one
+//! over all indices.
 //!
 //! Decision (2026-11-29): a table holds the dielectric and, for Schlick's term, what a boundary that reflects nothing leaves and what the
 //! rise of the term changes, for six exponents, because the albedo is linear in those and its error falls from 1e-2 to 2e-3; instead of
