@@ -286,6 +286,29 @@ fn what_a_decoder_would_misread_is_refused() {
     }
 }
 
+/// A file may go on after its picture with what is no level of it: a mask of bits, or another picture.
+#[test]
+fn pages_that_are_no_level_do_not_spoil_a_file() {
+    for (side, bits) in [(4u32, 1u8), (4, 8), (2, 1), (30_000, 1)] {
+        let mut pages = tiff(4, 4, 1, &[], &[7; 16]);
+        let (start, mut more) = (pages.len() as u32, tiff(side, side, 1, &[], &[9; 16]));
+        // The first page leads to the second, whose data lies further on.
+        let tags = usize::from(pages[8]);
+        pages[10 + 12 * tags..][..4].copy_from_slice(&(start + 8).to_le_bytes());
+        for tag in more[10..10 + 12 * tags].chunks_exact_mut(12) {
+            let value = u32::from_le_bytes(tag[8..].try_into().unwrap());
+            let moved = match u16::from_le_bytes([tag[0], tag[1]]) {
+                273 => value + start,
+                258 => u32::from(bits),
+                _ => value,
+            };
+            tag[8..].copy_from_slice(&moved.to_le_bytes());
+        }
+        let texture = read_back("t.tif", &[pages, more].concat()).unwrap_or_else(|e| panic!("{side} {bits}: {e}"));
+        assert_eq!((texture.size(), texture.resident().0), ([4, 4], 1), "{side} {bits}");
+    }
+}
+
 /// s and t span what is displayed, of which the data may be a part.
 #[test]
 fn the_data_of_an_exr_may_be_a_part_of_it() {

@@ -66,7 +66,7 @@ impl fmt::Display for RenderError {
             }
             RenderError::Facets { facets, most } => write!(
                 f,
-                "displacement takes {facets} triangles, and {most} are the most: give spheres and quads a smaller `resolution`"
+                "displacement takes {facets} triangles, and {most} are the most: give spheres and quads a smaller `resolution`, meshes fewer faces"
             ),
             RenderError::Threads(reason) => write!(f, "the threads could not be started: {reason}"),
             RenderError::ThreadFailed => f.write_str("a thread has failed"),

@@ -202,25 +202,24 @@ impl fmt::Display for Plan {
             "ray cones: {}",
             or(self.cones, "carried, derivatives are read", "not carried, no derivative is read")
         )?;
+        let numbers = |has: fn(&MaterialPlan) -> bool| {
+            let having = self.materials.iter().enumerate().filter(|(_, material)| has(material));
+            having.map(|(i, _)| i.to_string()).collect::<Vec<_>>().join(", ")
+        };
         if self.clear {
-            let names: Vec<String> =
-                (0..self.materials.len()).filter(|i| self.materials[*i].clear).map(|i| i.to_string()).collect();
-            writeln!(f, "clear surfaces: material {}, which shadow rays pass with their color", names.join(", "))?;
+            writeln!(f, "clear surfaces: material {}, which shadow rays pass with their color", numbers(|m| m.clear))?;
         }
-        let moved: Vec<String> =
-            (0..self.materials.len()).filter(|&i| self.materials[i].moves).map(|i| i.to_string()).collect();
+        let moved = numbers(|m| m.moves);
         if !moved.is_empty() {
-            writeln!(f, "moved surfaces: material {}, as triangles, once before anything else", moved.join(", "))?;
+            writeln!(f, "moved surfaces: material {moved}, as triangles, once before anything else")?;
         }
-        let smooth: Vec<String> =
-            (0..self.materials.len()).filter(|&i| self.materials[i].smooth).map(|i| i.to_string()).collect();
+        let smooth = numbers(|m| m.smooth);
         match (self.terminator, smooth.is_empty()) {
             (Terminator::None, _) => {}
             (_, true) => writeln!(f, "smooth meshes: none that scatters, so no remedy for terminators")?,
             (method, false) => writeln!(
                 f,
-                "smooth meshes: material {}, {}",
-                smooth.join(", "),
+                "smooth meshes: material {smooth}, {}",
                 or(
                     method == Terminator::Factor,
                     "where light fades before a facet turns away",

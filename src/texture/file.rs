@@ -121,14 +121,18 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
     loop {
         let (width, height) = decoder.dimensions().map_err(failed)?;
         let (width, height) = (width as usize, height as usize);
-        let layout = TiffLayout::of(&mut decoder)?;
-        let left = levels.iter().fold(budget, |left, level| left.saturating_sub(level.bytes() as u64));
-        sized(width, height, layout.bytes, left)?;
+        // What comes after the picture and is no level of it, such as a mask, is none of ours.
         if let Some(last) = levels.last()
             && (width != (last.width() / 2).max(1) || height != (last.height() / 2).max(1))
         {
             break;
         }
+        let layout = match TiffLayout::of(&mut decoder) {
+            Err(_) if !levels.is_empty() => break,
+            layout => layout?,
+        };
+        let left = levels.iter().fold(budget, |left, level| left.saturating_sub(level.bytes() as u64));
+        sized(width, height, layout.bytes, left)?;
         if levels.is_empty() {
             wrap = tiff_wrap(&mut decoder);
         }
@@ -241,10 +245,10 @@ fn rank(name: &str) -> (usize, String) {
 }
 
 /// Rows of a part of a picture in the whole, which is 0 elsewhere.
-fn placed(rows: &[f32], [width, _]: [usize; 2], count: usize, offset: [i32; 2], display: [usize; 2]) -> Vec<f32> {
+fn placed(rows: &[f32], [width, _]: [usize; 2], count: usize, offset: [i64; 2], display: [usize; 2]) -> Vec<f32> {
     let mut out = vec![0.0; display[0] * display[1] * count];
     for (at, texel) in rows.chunks_exact(count).enumerate() {
-        let (x, y) = (i64::from(offset[0]) + (at % width) as i64, i64::from(offset[1]) + (at / width) as i64);
+        let (x, y) = (offset[0] + (at % width) as i64, offset[1] + (at / width) as i64);
         if (0..display[0] as i64).contains(&x) && (0..display[1] as i64).contains(&y) {
             let to = (y as usize * display[0] + x as usize) * count;
             out[to..to + count].copy_from_slice(texel);
@@ -262,7 +266,7 @@ fn read_exr(path: &Path, budget: u64) -> Result<Texture, String> {
     let size = [layer.size.0, layer.size.1];
     // s and t span the display window, of which the data may be a part.
     let (whole, data) = (image.attributes.display_window, layer.attributes.layer_position);
-    let offset = [data.0 - whole.position.0, data.1 - whole.position.1];
+    let offset = [(data.0, whole.position.0), (data.1, whole.position.1)].map(|(a, b)| i64::from(a) - i64::from(b));
     let display = [whole.size.0, whole.size.1];
     let part = (offset, display) != ([0; 2], size);
     let mut channels: Vec<_> = layer.channel_data.list.into_iter().collect();

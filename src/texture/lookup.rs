@@ -269,6 +269,7 @@ impl Texture {
     fn texels<const N: usize>(&self, level: &Level, [left, top]: [i32; 2], how: &Lookup) -> [[Vec4; N]; N] {
         let (width, height, first) = (level.width(), level.height(), how.first as usize);
         let count = level.channels().saturating_sub(first);
+        let (there, fill) = (known(count), Vec4::splat(how.fill * level.unit()));
         let range = |from: i32, size: usize| from >= 0 && from as usize + N <= size;
         if range(left, width) && range(top, height) && count > 0 {
             let (mut columns, mut rows) = ([0; N], [0; N]);
@@ -278,7 +279,6 @@ impl Texture {
             }
             let mut out = level.fours(rows, columns);
             if count < 4 {
-                let (there, fill) = (known(count), Vec4::splat(how.fill * level.unit()));
                 for texel in out.as_flattened_mut() {
                     *texel = Vec4::select(there, *texel, fill);
                 }
@@ -287,7 +287,6 @@ impl Texture {
         }
         let column = |i: usize| self.wrap_of(0, how).texel(left.saturating_add(i as i32), width);
         let row = |i: usize| self.wrap_of(1, how).texel(top.saturating_add(i as i32), height);
-        let (there, fill) = (known(count), Vec4::splat(how.fill * level.unit()));
         let texel = |row: Option<usize>, column: Option<usize>| match (row, column) {
             (Some(_), Some(_)) if count == 0 => fill,
             (Some(row), Some(column)) => {

@@ -182,7 +182,7 @@ impl FacetTable {
         TABLES[D::FACETS as usize][geometry as usize].get_or_init(|| FacetTable::build::<D>(geometry))
     }
 
-    /// Integrates the distribution at all places of the table; takes some 40 to 60 ms on one thread, for grooves four times that.
+    /// Integrates the distribution at all places of the table; takes some 40 to 60 ms on one thread, for grooves at most four times that.
     pub fn build<D: Distribution>(geometry: Geometry) -> Self {
         // The shadowing of grooves has edges, over which few nodes are up to 4e-3 off.
         let finer = if geometry == Geometry::VGroove { 2 } else { 1 };

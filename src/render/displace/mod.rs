@@ -89,11 +89,11 @@ fn targets(
     for (material, primitives) in materials {
         let material = &scene.materials[material as usize];
         let Some(group) = &material.displacement else { continue };
-        let mut lost = 0;
+        let (needs, mut lost) = (Needs::of(group), 0);
         for wave in primitives.chunks(WAVE * (MAX_LANES / 3)) {
             let batches = wave.par_chunks(MAX_LANES / 3).map_init(
                 || Batch { machine: Machine::with_host(host.clone()), points: Points::default() },
-                |batch, primitives| batch.shade(group, geometry, primitives, scene.camera.eye),
+                |batch, primitives| batch.shade(group, &needs, geometry, primitives, scene.camera.eye),
             );
             let batches: Vec<_> = batches.collect();
             for (primitives, (corners, said)) in wave.chunks(MAX_LANES / 3).zip(batches) {
@@ -128,6 +128,7 @@ impl Batch {
     fn shade(
         &mut self,
         group: &Group,
+        needs: &Needs,
         geometry: &Geometry,
         primitives: &[u32],
         eye: Vec3,
@@ -141,7 +142,7 @@ impl Batch {
             primitives.iter().flat_map(|&number| [0, 1, 2].map(|k| corner(number, k))).collect();
         let points = &mut self.points;
         points.resize(segments.len());
-        fill(points, geometry, segments.iter(), &Needs::of(group));
+        fill(points, geometry, segments.iter(), needs);
         for (lane, &number) in primitives.iter().flat_map(|number| [number; 3]).enumerate() {
             let p = corners_of(&geometry.primitives[number as usize].shape)[lane % 3];
             points.p.set(lane, p);

@@ -97,8 +97,8 @@ struct Neighbours {
     rows: [usize; 4],
     by_row: [f32; 4],
     counts: Parts,
-    /// The part that counts, where it is one.
-    one: Option<usize>,
+    /// Only the first part counts.
+    dielectric: bool,
     /// What is left where the table's numbers are all 0, in parts of a mirror.
     constant: f32,
 }
@@ -116,8 +116,7 @@ impl Neighbours {
         let counts = counting(ends);
         // Of a mirror that which the others do not have is left: f0, and of the rise with exponent 0 all.
         let constant = if ends.is_some() { 1.0 - counts[1] } else { 0.0 };
-        let one = ends.is_none().then_some(0);
-        Neighbours { tables, by_index, rows: around(row, WIDTHS), by_row, counts, one, constant }
+        Neighbours { tables, by_index, rows: around(row, WIDTHS), by_row, counts, dielectric: ends.is_none(), constant }
     }
 
     /// What is left at one of the tables' cosines, in parts of a mirror.
@@ -128,9 +127,9 @@ impl Neighbours {
                 self.tables.map(|table| weighted(self.rows.map(|row| table[row * COSINES + column][k]), self.by_row));
             self.by_index[0] * near + self.by_index[1] * far
         };
-        match self.one {
-            Some(k) => part(k),
-            None => self.constant + (1..self.counts.len()).map(|k| self.counts[k] * part(k)).sum::<f32>(),
+        match self.dielectric {
+            true => part(0),
+            false => self.constant + (1..self.counts.len()).map(|k| self.counts[k] * part(k)).sum::<f32>(),
         }
     }
 }
