@@ -55,6 +55,7 @@ mod debug;
 mod displace;
 mod emission;
 mod error;
+mod exact;
 mod explain;
 mod film;
 mod form;
