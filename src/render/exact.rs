@@ -99,7 +99,8 @@ impl Sums {
     pub fn settle(&mut self) {
         for number in TIERS.start..=TIERS.end {
             let Some(at) = self.tiers.iter().position(|tier| tier.number == number) else { continue };
-            let carried: Vec<[i64; PARTS]> = self.tiers[at].sums.iter_mut().map(|sum| sum.each_mut().map(carry)).collect();
+            let carried: Vec<[i64; PARTS]> =
+                self.tiers[at].sums.iter_mut().map(|sum| sum.each_mut().map(carry)).collect();
             if carried.iter().any(|carried| *carried != [0; PARTS]) {
                 let above = &mut self.tier(number + 1).sums;
                 above.iter_mut().zip(carried).for_each(|(sum, more)| (0..PARTS).for_each(|k| sum[k] += more[k]));
@@ -138,6 +139,29 @@ impl Sums {
         std::array::from_fn(|part| self.value_of(i, part))
     }
 
+    /// The tiers, the settled sums of which are a function of their exact values: those that hold anything, and tier 0; by number.
+    pub fn settled(mut self) -> Vec<Tier> {
+        self.settle();
+        self.tiers.retain(|tier| tier.number == 0 || tier.sums.iter().any(|sum| *sum != [0; PARTS]));
+        self.tiers.sort_unstable_by_key(|tier| tier.number);
+        self.tiers
+    }
+
+    /// Sums of the tiers of [`settled`](Sums::settled), all of one length.
+    pub fn of(tiers: Vec<Tier>) -> Option<Self> {
+        let [first, rest @ ..] = &tiers[..] else { return None };
+        let numbers = tiers.iter().map(|tier| tier.number);
+        let even = rest.iter().all(|tier| tier.sums.len() == first.sums.len());
+        let known = numbers.clone().all(|number| (TIERS.start..=TIERS.end + 1).contains(&number));
+        let apart =
+            numbers.clone().enumerate().all(|(i, number)| numbers.clone().skip(i + 1).all(|other| other != number));
+        let room = tiers.iter().flat_map(|tier| tier.sums.iter().flatten()).all(|sum| sum.unsigned_abs() < 1 << 61);
+        let at = tiers.iter().position(|tier| tier.number == 0)?;
+        let mut sums = Sums { tiers };
+        sums.tiers.swap(0, at);
+        (even && known && apart && room).then_some(sums)
+    }
+
     /// The digits of a sum, from the highest on, in as many roundings as there are digits.
     fn value_of(&self, i: usize, part: usize) -> f64 {
         const COUNT: usize = (TIERS.end - TIERS.start) as usize + 3;
@@ -174,9 +198,9 @@ fn add(sums: &mut [[i64; PARTS]], place: &Place, value: [f64; PARTS]) {
     }
 }
 
-/// Leaves the lowest bits, as many as lie between two tiers, and gives the rest in units of the next tier.
+/// Leaves what is nearest to zero and gives the rest in units of the next tier. So small sums of either sign carry nothing.
 fn carry(sum: &mut i64) -> i64 {
-    let above = *sum >> STEP;
+    let above = (*sum + (1 << (STEP - 1))) >> STEP;
     *sum -= above << STEP;
     above
 }
@@ -221,7 +245,7 @@ mod tests {
         assert_eq!(forward.map(f64::to_bits), backward.map(f64::to_bits));
         // Sums of doubles, the control, do show it.
         let add = |sum: f64, x: &f32| sum + f64::from(*x);
-        let tame: Vec<f32> = (1..3000u32).map(|i| 1.0 / i as f32).collect();
+        let tame: Vec<f32> = (1..3000u32).map(|i| (i as f32).powi(-3)).collect();
         assert_ne!(tame.iter().fold(0.0, add), tame.iter().rev().fold(0.0, add));
     }
 

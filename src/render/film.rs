@@ -80,17 +80,34 @@ fn limited(x: f64) -> f32 {
     x.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }
 
+/// The first `channels` numbers of a pixel of these sums, 3 or 4.
+pub fn means(sum: [f64; PARTS], channels: usize) -> impl Iterator<Item = f32> {
+    let mean = move |k: usize| match if sum[4] > 0.0 { limited(sum[k] / sum[4]) } else { 0.0 } {
+        // A clear surface that amplifies makes a sample's share negative.
+        alpha if k == ALPHA => alpha.clamp(0.0, 1.0),
+        light => light,
+    };
+    (0..channels).map(mean)
+}
+
 /// What all tiles have gathered: some 50 bytes a pixel, twice that when there are halves, and as much again while a
 /// picture is made of it.
 #[derive(Debug)]
 pub struct Film {
     tiles: Vec<TileSums>,
+    /// Sums over the pixels of samples that were made elsewhere.
+    kept: Option<Sums>,
 }
 
 impl Film {
     /// An empty film.
     pub fn new(settings: &Settings) -> Self {
-        Film { tiles: vec![TileSums::default(); Tile::count(settings)] }
+        Film { tiles: vec![TileSums::default(); Tile::count(settings)], kept: None }
+    }
+
+    /// Adds to all pictures what was made elsewhere, in place of what this was told before.
+    pub fn keep(&mut self, sums: Sums) {
+        self.kept = Some(sums);
     }
 
     /// Hands out the sums of tile `number`, to be given back with more in them.
@@ -107,24 +124,20 @@ impl Film {
     pub fn picture(&self, settings: &Settings, halves: std::ops::Range<usize>, channels: usize) -> Vec<f32> {
         let samples = |tile: &TileSums| tile.halves[halves.clone()].iter().map(|half| half.samples).sum::<u32>();
         let first = self.tiles.first().map_or(0, samples);
-        let mean = |sum: &[f64; PARTS], k: usize| match if sum[4] > 0.0 { limited(sum[k] / sum[4]) } else { 0.0 } {
-            // A clear surface that amplifies makes a sample's share negative.
-            alpha if k == ALPHA => alpha.clamp(0.0, 1.0),
-            light => light,
-        };
-        let means = |sum: [f64; PARTS]| (0..channels).map(move |k| mean(&sum, k));
-        if self.tiles.iter().all(|tile| samples(tile) == first) {
+        if self.kept.is_some() || self.tiles.iter().all(|tile| samples(tile) == first) {
             let sums = self.sums(settings, halves);
-            (0..settings.width as usize * settings.height as usize).flat_map(|i| means(sums.value(i))).collect()
+            (0..settings.width as usize * settings.height as usize)
+                .flat_map(|i| means(sums.value(i), channels))
+                .collect()
         } else {
-            self.shares(settings, halves).into_iter().flat_map(means).collect()
+            self.shares(settings, halves).into_iter().flat_map(|sum| means(sum, channels)).collect()
         }
     }
 
     /// The exact sums of `halves` over the pixels of the picture.
-    fn sums(&self, settings: &Settings, halves: std::ops::Range<usize>) -> Sums {
+    pub fn sums(&self, settings: &Settings, halves: std::ops::Range<usize>) -> Sums {
         let (width, height) = (settings.width as usize, settings.height as usize);
-        let mut sums = Sums::default();
+        let mut sums = self.kept.clone().unwrap_or_default();
         sums.open(width * height);
         for (number, tile_sums) in self.tiles.iter().enumerate() {
             let tile = Tile::number(settings, number);

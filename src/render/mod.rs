@@ -64,6 +64,7 @@ mod image;
 mod lanes;
 mod light;
 pub mod output;
+pub mod part;
 mod path;
 mod plan;
 mod points;

@@ -28,12 +28,17 @@ pub fn check(path: &Path) -> Result<Format, OutputError> {
 
 /// Writes `image` to `path` in the format of its extension.
 pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
-    let (format, destination) = look(path)?;
-    let encode = |sink: &mut Sink| match format {
+    let format = check(path)?;
+    write_with(path, |sink| match format {
         Format::Exr => write_exr(image, sink),
         Format::Png => write_png(image, sink),
         Format::Hdr => write_hdr(image, sink),
-    };
+    })
+}
+
+/// Writes what `encode` makes to `path`.
+pub(super) fn write_with(path: &Path, encode: impl FnOnce(&mut Sink) -> Result<(), String>) -> Result<(), OutputError> {
+    let (_, destination) = look(path)?;
     let written = destination.write(|sink| encode(sink).map_err(std::io::Error::other));
     written.map_err(|error| unwritable(path, error.to_string()))
 }
@@ -97,12 +102,8 @@ fn write_exr(image: &Image, writer: &mut (impl Write + std::io::Seek)) -> Result
     use exr::WritableImage;
     let size = exr::Vec2(image.width as usize, image.height as usize);
     let at = |p: exr::Vec2<usize>| image.pixel(p.0 as u32, p.1 as u32);
-    let attributes = exr::LayerAttributes {
-        software_name: Some(exr::Text::from(format!("velour {}", env!("CARGO_PKG_VERSION")).as_str())),
-        comments: Some(exr::Text::from(note(image).as_str())),
-        ..exr::LayerAttributes::default()
-    };
-    let encoding = exr::Encoding::FAST_LOSSLESS;
+    let attributes = layer_attributes(image, "");
+    let encoding = ENCODING;
     if image.channels == 4 {
         let channels = exr::SpecificChannels::rgba(|p| {
             let c = at(p);
@@ -119,6 +120,20 @@ fn write_exr(image: &Image, writer: &mut (impl Write + std::io::Seek)) -> Result
         exr::Image::from_layer(layer).write().to_buffered(writer)
     }
     .map_err(|e| e.to_string())
+}
+
+/// Without loss and fast; in the order of lines, or the bytes of a file would depend on which thread has compressed its lines first.
+pub(super) const ENCODING: exr::Encoding =
+    exr::Encoding { line_order: exr::LineOrder::Increasing, ..exr::Encoding::FAST_LOSSLESS };
+
+/// The header of a layer that holds the picture; an only layer needs no name.
+pub(super) fn layer_attributes(image: &Image, name: &str) -> exr::LayerAttributes {
+    exr::LayerAttributes {
+        layer_name: Some(name).filter(|name| !name.is_empty()).map(exr::Text::from),
+        software_name: Some(exr::Text::from(format!("velour {}", env!("CARGO_PKG_VERSION")).as_str())),
+        comments: Some(exr::Text::from(note(image).as_str())),
+        ..exr::LayerAttributes::default()
+    }
 }
 
 /// What the header says of the picture.

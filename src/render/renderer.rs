@@ -5,6 +5,7 @@ use super::displace::displaced;
 use super::error::RenderError;
 use super::film::Film;
 use super::image::{About, Image};
+use super::part::{Part, PartError, Whole, fingerprint};
 use super::path::Dropped;
 use super::plan::Plan;
 use super::progress::Progress;
@@ -19,7 +20,7 @@ use crate::exec::{Group, Report, ReportPlace};
 use crate::scene::{Camera, Scene};
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 /// A scene that is being rendered.
@@ -61,6 +62,8 @@ pub struct Renderer {
     /// What shaders said when surfaces were moved.
     said_moving: Vec<Report>,
     seconds_preparing: f64,
+    /// What stands for the scene in the files of parts, once it was asked for.
+    fingerprint: OnceLock<u64>,
 }
 
 /// What the threads put together.
@@ -127,6 +130,7 @@ impl Renderer {
             gathered: Mutex::new(Gathered::new(&world, start)),
             said_moving,
             seconds_preparing: start.elapsed().as_secs_f64(),
+            fingerprint: OnceLock::new(),
             world,
             pool,
         })
@@ -189,19 +193,21 @@ impl Renderer {
     fn trace(&self, tasks: &[Task], progress: &dyn Progress) {
         let Renderer { world, waves, gathered, .. } = self;
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let stop = || next.store(tasks.len(), Ordering::Relaxed);
+        let deadline = gathered.lock().ok().and_then(|all| all.rounds.deadline());
+        let late = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        let stop = || progress.cancelled() || late();
         self.pool.broadcast(|thread| {
             let Ok(mut wave) = waves[thread.index()].lock() else { return };
             let wave = wave.get_or_insert_with(|| Wave::new(world));
-            while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !progress.cancelled()) {
+            while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop()) {
                 let tile = Tile::number(&world.settings, task.tile);
                 let Ok(mut sums) = gathered.lock().map(|mut all| all.film.take(task.tile)) else { return };
-                render_tile(world, wave, &tile, task.first..task.end, &mut sums);
+                let end = render_tile(world, wave, &tile, task.first..task.end, &mut sums, &stop);
                 let Ok(mut all) = gathered.lock() else { return };
                 all.film.give(task.tile, sums);
-                all.keep(task, wave);
-                if all.rounds.late() || wave.shading.failed() {
-                    stop();
+                all.keep(&Task { end, ..*task }, wave);
+                if wave.shading.failed() {
+                    next.store(tasks.len(), Ordering::Relaxed);
                 }
                 drop(all);
                 progress.tiles(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
@@ -221,20 +227,61 @@ impl Renderer {
     /// What is known of the picture so far.
     fn about(&self, all: &Gathered) -> About {
         let settings = &self.world.settings;
-        let taken = all.rounds.taken();
+        let taken = || all.rounds.taken();
         let paths =
-            |(number, samples): (usize, &u32)| u64::from(Tile::number(settings, number).pixels()) * u64::from(*samples);
+            |(number, samples): (usize, u32)| u64::from(Tile::number(settings, number).pixels()) * u64::from(samples);
         About {
             scene: self.world.scene.name.clone(),
             samples: settings.samples,
-            taken: [taken.iter().copied().min().unwrap_or(0), taken.iter().copied().max().unwrap_or(0)],
+            taken: [taken().min().unwrap_or(0), taken().max().unwrap_or(0)],
             noise: all.rounds.noise().filter(|_| settings.adapts()),
             seed: settings.seed,
-            paths: taken.iter().enumerate().map(paths).sum(),
+            paths: taken().enumerate().map(paths).sum(),
             rays: all.rays,
             seconds_preparing: self.seconds_preparing,
             seconds_tracing: all.seconds_tracing,
             reports: reports(&self.world.scene, all.reports.clone(), &all.dropped),
+        }
+    }
+
+    /// The samples so far, to be kept in a file and gone on from.
+    pub fn part(&self) -> Part {
+        let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
+        let settings = &self.world.settings;
+        Part::new(self.whole(), all.rounds.held().to_vec(), all.film.sums(settings, 0..settings.halves()))
+    }
+
+    /// Goes on from a part of this picture, whose samples take the place of all there are. Those of it that lie between
+    /// `first_sample` and `samples` are not made again; those that do not are kept as well.
+    ///
+    /// # Errors
+    /// It is of another picture, or the render stops by noise or time.
+    pub fn resume(&mut self, part: Part) -> Result<(), PartError> {
+        if self.world.settings.adapts() {
+            return Err(PartError::Adapts);
+        }
+        part.is_of(&self.whole())?;
+        self.restart();
+        let all = self.gathered.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let (held, sums) = part.into_sums();
+        all.rounds.resume(held);
+        all.film.keep(sums);
+        Ok(())
+    }
+
+    /// What its parts are parts of.
+    fn whole(&self) -> Whole {
+        let (scene, settings) = (&self.world.scene, &self.world.settings);
+        let Settings { width, height, alpha, seed, tile_size, .. } = *settings;
+        Whole {
+            scene: scene.name.clone(),
+            fingerprint: *self.fingerprint.get_or_init(|| fingerprint(scene, settings)),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            width,
+            height,
+            alpha,
+            seed,
+            tile_size,
         }
     }
 
@@ -300,6 +347,7 @@ impl Renderer {
         self.world = self.pool.install(|| World::new(accel, scene, settings, sky));
         self.world.reports.extend(self.said_moving.iter().cloned());
         self.seconds_preparing = start.elapsed().as_secs_f64();
+        self.fingerprint = OnceLock::new();
         self.waves = empty_waves(&self.pool);
         self.gathered = Mutex::new(Gathered::new(&self.world, start));
     }

@@ -111,6 +111,8 @@ pub struct Settings {
     pub height: u32,
     /// Samples a pixel; the most of them when `noise` or `seconds` is set.
     pub samples: u32,
+    /// The number of the first sample, below `samples`: samples are numbered, and a sample of a number is the same in any render.
+    pub first_sample: u32,
     /// Stops a tile when the root of its mean square error, estimated from two half pictures, is below this; in units
     /// of radiance, as the picture has it.
     pub noise: Option<f32>,
@@ -155,6 +157,7 @@ impl Default for Settings {
             width: 640,
             height: 480,
             samples: 1,
+            first_sample: 0,
             noise: None,
             seconds: None,
             seed: 0,
@@ -209,8 +212,11 @@ impl Settings {
         if self.width == 0 || self.height == 0 || u64::from(self.width) * u64::from(self.height) > 1 << 27 {
             return Err(SettingsError::Size { width: self.width, height: self.height });
         }
-        if self.samples == 0 {
+        if self.samples <= self.first_sample {
             return Err(SettingsError::NoSamples);
+        }
+        if self.adapts() && self.first_sample > 0 {
+            return Err(SettingsError::First);
         }
         if self.noise.is_some_and(|noise| !(noise > 0.0 && noise.is_finite())) {
             return Err(SettingsError::Noise);

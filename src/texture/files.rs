@@ -83,7 +83,8 @@ impl TextureFiles {
         Ok(text)
     }
 
-    fn find(&self, name: &str) -> Option<PathBuf> {
+    /// Where the file of a name is.
+    pub fn find(&self, name: &str) -> Option<PathBuf> {
         let here = Path::new(name);
         let beside = self.folders.iter().map(|folder| folder.join(name));
         std::iter::once(here.to_owned()).chain(beside).find(|path| !name.is_empty() && path.is_file())
