@@ -52,6 +52,7 @@
 //! | room | feature | what it is |
 //! |---|---|---|
 //! | `grammar/` | | text to syntax tree: preprocessor, lexer, grammar, diagnostics (a crate of its own) |
+//! | `files` | `render` | finished files: whole or not at all, through links, pipes and devices |
 //! | [`lang`] | | nouns: types, symbols, tables of builtins and globals, what a closure declares |
 //! | [`math`] | | columns, elementary functions, noise, frames, warps, quadrature; knows no language |
 //! | [`texture`] | | pictures that shaders look up: pyramids, filters; files with `render` |
@@ -125,6 +126,8 @@ pub mod cli;
 pub mod closure;
 pub mod compile;
 pub mod exec;
+#[cfg(feature = "render")]
+pub mod files;
 pub mod ir;
 pub mod lang;
 pub mod math;

@@ -1,12 +1,12 @@
-//! Image files: EXR, PNG and HDR, written under a temporary name and then renamed, so that no half file is ever seen.
+//! Image files: EXR, PNG and HDR.
 
 use super::error::OutputError;
 use super::image::Image;
+use crate::files::{Destination, Sink};
 use crate::math::elementary::pow;
 use exr::prelude as exr;
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 
 /// The kinds of files that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,15 +20,37 @@ pub enum Format {
     Hdr,
 }
 
-/// Says, before anything is rendered, whether a file of this name can be written.
+/// Says, before anything is rendered, whether a file of this name can be written. `-`, standard output, is an EXR; `png:-` and
+/// `hdr:-` say otherwise.
 pub fn check(path: &Path) -> Result<Format, OutputError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let format = match extension.as_str() {
-        "exr" => Format::Exr,
-        "png" => Format::Png,
-        "hdr" => Format::Hdr,
-        _ => return Err(OutputError::UnknownFormat { path: path.to_owned() }),
+    look(path).map(|(format, _)| format)
+}
+
+/// Writes `image` to `path` in the format of its extension.
+pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
+    let (format, destination) = look(path)?;
+    let encode = |sink: &mut Sink| match format {
+        Format::Exr => write_exr(image, sink),
+        Format::Png => write_png(image, sink),
+        Format::Hdr => write_hdr(image, sink),
     };
+    let written = destination.write(|sink| encode(sink).map_err(std::io::Error::other));
+    written.map_err(|error| unwritable(path, error.to_string()))
+}
+
+/// Does a picture of this name go to standard output?
+pub fn is_standard_output(path: &Path) -> bool {
+    standard_format(path).is_some()
+}
+
+/// The format and the destination of a name.
+fn look(path: &Path) -> Result<(Format, Destination), OutputError> {
+    if let Some(format) = standard_format(path) {
+        return Ok((format, at(Path::new("-"))?));
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let unknown = || OutputError::UnknownFormat { path: path.to_owned() };
+    let format = format_named(&extension).ok_or_else(unknown)?;
     let folder = folder_of(path);
     if !folder.is_dir() {
         return Err(OutputError::NoFolder { folder: folder.to_owned() });
@@ -36,27 +58,28 @@ pub fn check(path: &Path) -> Result<Format, OutputError> {
     if path.is_dir() {
         return Err(OutputError::IsFolder { path: path.to_owned() });
     }
-    // Permissions, full disks and odd file systems are best found out by trying.
-    let temporary = temporary_name(path);
-    let tried = File::create(&temporary).map_err(|e| unwritable(path, e.to_string()));
-    if tried.is_ok() {
-        // What cannot be removed now is written over, and then renamed, by the image.
-        let _ = std::fs::remove_file(&temporary);
-    }
-    tried.map(|_| format)
+    Ok((format, at(path)?))
 }
 
-/// Writes `image` to `path` in the format of its extension.
-pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
-    let format = check(path)?;
-    let temporary = temporary_name(path);
-    let written =
-        write_to(image, format, &temporary).and_then(|()| std::fs::rename(&temporary, path).map_err(|e| e.to_string()));
-    written.map_err(|e| {
-        // A failure to remove is not worth hiding the first failure for.
-        let _ = std::fs::remove_file(&temporary);
-        unwritable(path, e)
-    })
+fn at(path: &Path) -> Result<Destination, OutputError> {
+    Destination::at(path).map_err(|error| unwritable(path, error.to_string()))
+}
+
+fn format_named(name: &str) -> Option<Format> {
+    match name {
+        "exr" => Some(Format::Exr),
+        "png" => Some(Format::Png),
+        "hdr" => Some(Format::Hdr),
+        _ => None,
+    }
+}
+
+/// The format of a name that means standard output.
+fn standard_format(path: &Path) -> Option<Format> {
+    match path.to_str()?.strip_suffix('-')? {
+        "" => Some(Format::Exr),
+        named => format_named(named.strip_suffix(':')?),
+    }
 }
 
 fn unwritable(path: &Path, reason: String) -> OutputError {
@@ -68,24 +91,6 @@ fn folder_of(path: &Path) -> &Path {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     }
-}
-
-/// A name beside the file's own, so that the renaming stays on one disk; with the process, so that two renders of one
-/// name do not meet.
-fn temporary_name(path: &Path) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    folder_of(path).join(format!(".{name}.{}.part", std::process::id()))
-}
-
-fn write_to(image: &Image, format: Format, path: &Path) -> Result<(), String> {
-    let file = File::create(path).map_err(|e| e.to_string())?;
-    let mut writer = BufWriter::new(file);
-    match format {
-        Format::Exr => write_exr(image, &mut writer)?,
-        Format::Png => write_png(image, &mut writer)?,
-        Format::Hdr => write_hdr(image, &mut writer)?,
-    }
-    writer.flush().map_err(|e| e.to_string())
 }
 
 fn write_exr(image: &Image, writer: &mut (impl Write + std::io::Seek)) -> Result<(), String> {

@@ -11,7 +11,7 @@ use source::{Source, Token, sources};
 
 /// The rooms from the ground up; a room uses itself and the ones before it.
 const ROOMS: &[&str] = &[
-    "lang", "math", "ops", "check", "ir", "optimize", "bsdf", "closure", "exec", "compile", "scene", "render",
+    "files", "lang", "math", "ops", "check", "ir", "optimize", "bsdf", "closure", "exec", "compile", "scene", "render",
     "measure", "cli",
 ];
 
