@@ -4,6 +4,7 @@ use super::context::{Checker, Signature, Symbol};
 use super::typed::{self, FunctionId, VarId};
 use crate::lang::builtins;
 use crate::lang::types::{Base, Element, Length, Struct, Type};
+use crate::limits::NUMBERS;
 use std::sync::Arc;
 use velour_grammar::ast::{ArrayLen, FunctionDecl, Metadata, Param, ShaderDecl, StructDecl, TypeName, TypeSpec};
 use velour_grammar::{Diagnostic, Span};
@@ -14,6 +15,17 @@ const MAX_ELEMENTS: i32 = 16_384;
 impl Checker<'_> {
     /// The type written, with its array brackets.
     pub fn resolve_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
+        let ty = self.written_type(spec, array);
+        if ty.numbers(NUMBERS) <= NUMBERS {
+            return ty;
+        }
+        let message = format!("{} has more numbers than the {NUMBERS} that a shader may have", ty.named());
+        let diagnostic = Diagnostic::error("E0507", spec.span, message);
+        self.report(diagnostic.help("every point of a batch has its own copy: make its arrays shorter"));
+        Type::FLOAT
+    }
+
+    fn written_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
         let base = match &spec.base {
             _ if spec.closure => Base::Closure,
             TypeName::Int => Base::Int,

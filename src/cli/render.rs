@@ -2,11 +2,13 @@
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
-use super::speak::{say, tell};
+use super::speak::{leave_output, say, tell};
 use super::threads::capped;
+use super::watch::TimeBound;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
+use crate::limits::PRINTED;
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::{Explanation, Image, LightChoice, LightPoints, Progress, Renderer, Settings, Terminator, output};
 use crate::scene::{Scene, ShaderFiles};
@@ -26,7 +28,7 @@ pub struct RenderArgs {
     /// The image, as testrender takes it
     #[arg(value_name = "IMAGE", conflicts_with = "output")]
     image: Option<PathBuf>,
-    /// Threads; 0 for one a core, and at most 64 or four for each
+    /// Threads; 0 for one a core, and at most four for each
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
     /// Width and height in pixels [default: what the scene states, or 640 480]
@@ -179,12 +181,17 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         let text = "error: --res and --debug-pixel are given once\n  help: take one of them out";
         return Err(Failure::Usage(text.to_owned()));
     }
+    if output::is_standard_output(path) {
+        leave_output();
+    }
+    let loading = TimeBound::new(start, args.time, "while the scene was made ready");
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     args.testrender.note();
     let compiler = ShaderFiles::new(args.compile.compiler()?).lenient(!args.strict);
     let mut scene = Scene::load(&args.scene, &args.path, &compiler).map_err(Failure::of_scene)?;
-    if let Some(megabytes) = args.texture_memory {
-        scene.textures = Arc::new(scene.textures.limited(megabytes << 20));
+    let textures = args.texture_memory.map(|megabytes| megabytes.saturating_mul(1 << 20));
+    if let Some(bytes) = textures.or(args.compile.memory.map(|bytes| bytes / 2)) {
+        scene.textures = Arc::new(scene.textures.limited(bytes));
     }
     for warning in &scene.warnings {
         tell(&format!("{warning}\n"));
@@ -194,6 +201,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         [settings.width, settings.height] = stated;
     }
     settings.threads = capped(args.threads);
+    // Loading is part of the time.
+    settings.seconds = args.time.map(|seconds| (seconds - start.elapsed().as_secs_f64()).max(1e-3));
     if let Some(tolerance) = args.tolerance {
         settings.closure = chosen(args, tolerance, settings.closure);
     }
@@ -201,6 +210,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         say(&Explanation::new(&scene, &settings).to_string());
     }
     let mut renderer = Renderer::new(&scene, &settings).map_err(Failure::of_render)?;
+    drop(loading);
     if !renderer.plan().gives_light() {
         tell("warning: nothing in the scene gives light, so it is black\n");
     }
@@ -287,7 +297,7 @@ fn chosen(args: &RenderArgs, tolerance: f64, closure: closure::Settings) -> clos
 
 /// Passes on what shaders said.
 fn pass_on(reports: &[Report]) {
-    for report in reports {
+    for report in reports.iter().take(PRINTED) {
         match &report.kind {
             ReportKind::Output => say(&report.text),
             ReportKind::File(_) => tell(&report.to_string()),
@@ -295,6 +305,9 @@ fn pass_on(reports: &[Report]) {
                 tell(&format!("{report}\n"));
             }
         }
+    }
+    if reports.len() > PRINTED {
+        tell(&format!("and {} more\n", reports.len() - PRINTED));
     }
 }
 

@@ -10,6 +10,7 @@ use crate::texture::{Texture, TextureFiles};
 use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// The version of the language, as `OSL_VERSION` gives it.
 const LANGUAGE_VERSION: i32 = 11600;
@@ -40,7 +41,7 @@ pub fn host(
     host.spaces.extend(spaces.map(|(name, matrix)| (name.to_owned(), matrix)));
     let attributes = camera_attributes([settings.width, settings.height], camera.fov, CLIP, [0.0; 2]);
     host.attributes.extend(attributes);
-    RenderHost { plain: host, textures: textures.clone(), accel }
+    RenderHost { plain: host, textures: textures.clone(), accel, deadline: None }
 }
 
 /// What shaders of a scene may ask for: tables of spaces and attributes, what each point carries, and the scene's textures.
@@ -48,9 +49,21 @@ pub struct RenderHost {
     plain: PlainHost,
     textures: Arc<TextureFiles>,
     accel: Option<Arc<Accel>>,
+    deadline: Option<Instant>,
+}
+
+impl RenderHost {
+    /// The same, which gives up at a time.
+    pub fn until(self, deadline: Option<Instant>) -> Self {
+        RenderHost { deadline, ..self }
+    }
 }
 
 impl Host for RenderHost {
+    fn gives_up(&self) -> bool {
+        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
     fn space(&self, name: &str, points: &Points) -> Option<Matrix> {
         self.plain.space(name, points)
     }

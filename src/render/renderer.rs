@@ -94,6 +94,12 @@ impl Gathered {
         self.reports.extend(wave.shading.take_reports());
     }
 
+    /// Is there anything at all when the time is up?
+    fn check_time(&self) -> Result<(), RenderError> {
+        let nothing = self.rounds.late() && self.rounds.taken().iter().all(|samples| *samples == 0);
+        if nothing { Err(RenderError::Late) } else { Ok(()) }
+    }
+
     /// The first report that a shader cannot be run.
     fn check(&self) -> Result<(), RenderError> {
         let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
@@ -115,9 +121,9 @@ impl Renderer {
         check_camera(&scene.camera)?;
         let pool = pool(settings)?;
         let make = || {
-            let (scene, reports) = displaced(scene, settings)?;
+            let (scene, reports) = displaced(scene, settings, start)?;
             let accel = Arc::new(Accel::new(&scene.geometry));
-            let mut world = World::new(accel, scene, settings.clone(), None);
+            let mut world = World::new(accel, scene, settings.clone(), None, start);
             world.reports.extend(reports.iter().cloned());
             Ok((world, reports))
         };
@@ -170,12 +176,14 @@ impl Renderer {
     pub fn round_of(&mut self, samples: u32, progress: &dyn Progress) -> Result<bool, RenderError> {
         let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         gathered.check()?;
+        gathered.check_time()?;
         let tasks = gathered.rounds.next(&self.world.settings, samples);
         let start = Instant::now();
         self.trace(&tasks, progress);
         let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         gathered.seconds_tracing += start.elapsed().as_secs_f64();
         gathered.check()?;
+        gathered.check_time()?;
         Ok(gathered.rounds.look(&self.world.settings, &gathered.film))
     }
 
@@ -196,8 +204,14 @@ impl Renderer {
             while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !progress.cancelled()) {
                 let tile = Tile::number(&world.settings, task.tile);
                 let Ok(mut sums) = gathered.lock().map(|mut all| all.film.take(task.tile)) else { return };
+                let before = world.deadline.map(|_| sums.clone());
                 render_tile(world, wave, &tile, task.first..task.end, &mut sums);
                 let Ok(mut all) = gathered.lock() else { return };
+                if wave.shading.given_up() {
+                    // The tile stays as it was.
+                    all.film.give(task.tile, before.unwrap_or_default());
+                    return stop();
+                }
                 all.film.give(task.tile, sums);
                 all.keep(task, wave);
                 if all.rounds.late() || wave.shading.failed() {
@@ -234,8 +248,21 @@ impl Renderer {
             rays: all.rays,
             seconds_preparing: self.seconds_preparing,
             seconds_tracing: all.seconds_tracing,
-            reports: reports(&self.world.scene, all.reports.clone(), &all.dropped),
+            reports: self.reports(all),
         }
+    }
+
+    /// What was said, and what is missing.
+    fn reports(&self, all: &Gathered) -> Vec<Report> {
+        let mut reports = reports(&self.world.scene, all.reports.clone(), &all.dropped);
+        let empty = all.rounds.taken().iter().filter(|samples| **samples == 0).count();
+        if empty > 0 && all.rounds.late() {
+            let share = 100.0 * empty as f64 / all.rounds.taken().len() as f64;
+            let text =
+                format!("warning: the time was up before {share:.0} % of the picture had a sample; that part is black");
+            reports.push(Report::warning(text));
+        }
+        reports
     }
 
     /// Starts the picture anew.
@@ -297,7 +324,7 @@ impl Renderer {
     fn remake(&mut self, scene: Scene, settings: Settings, sky: Option<Sky>) {
         let start = Instant::now();
         let accel = self.world.accel.clone();
-        self.world = self.pool.install(|| World::new(accel, scene, settings, sky));
+        self.world = self.pool.install(|| World::new(accel, scene, settings, sky, start));
         self.world.reports.extend(self.said_moving.iter().cloned());
         self.seconds_preparing = start.elapsed().as_secs_f64();
         self.waves = empty_waves(&self.pool);

@@ -13,6 +13,13 @@ use std::ops::Range;
 fn trace(world: &World, wave: &mut Wave) {
     let mut bounce = 0;
     while !wave.active.is_empty() {
+        if world.late() {
+            wave.shading.give_up();
+        }
+        if wave.shading.given_up() {
+            wave.active.clear();
+            return;
+        }
         intersect(world, wave);
         if world.settings.alpha {
             leave_background_out(wave);
@@ -47,7 +54,7 @@ fn leave_background_out(wave: &mut Wave) {
     missed.retain(|&i| !paths[i as usize].clear);
 }
 
-/// Adds `samples` of each of the tile's pixels to `sums`.
+/// Adds `samples` of each of the tile's pixels to `sums`, of which nothing is worth anything when the time was up on the way.
 ///
 /// Where the film has two halves, new samples go to the second; at each power of two all there is moves to the first, so that both
 /// are evenly spread.
@@ -86,6 +93,9 @@ fn render_part(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u32>,
                 camera::start(world, wave, tile.x + pixel % tile.width, tile.y + pixel / tile.width, range.clone());
             }
             trace(world, wave);
+            if wave.shading.given_up() {
+                return;
+            }
             for sample in range.clone() {
                 let (mut x, mut y) = (first % tile.width, first / tile.width);
                 let paths = (sample - range.start) as usize..wave.paths.len();

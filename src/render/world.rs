@@ -12,6 +12,7 @@ use crate::exec::{Group, Host, Report};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Everything that tiles share.
 pub struct World {
@@ -33,6 +34,8 @@ pub struct World {
     pub sky: Sky,
     /// The radiance of each object, where it is one constant; zero for objects that do not emit.
     pub object_emission: Vec<Option<Vec3>>,
+    /// When to stop, if there is a time.
+    pub deadline: Option<Instant>,
     /// What shaders said while lights were prepared.
     pub reports: Vec<Report>,
 }
@@ -40,11 +43,12 @@ pub struct World {
 impl World {
     /// Prepares `scene`; runs shaders where emission has to be known beforehand.
     ///
-    /// `accel` is over the scene's geometry. A `sky` that is given is taken as it is.
-    pub fn new(accel: Arc<Accel>, scene: Scene, settings: Settings, sky: Option<Sky>) -> Self {
+    /// `accel` is over the scene's geometry. A `sky` that is given is taken as it is. The clock of a time limit runs from `start`.
+    pub fn new(accel: Arc<Accel>, scene: Scene, settings: Settings, sky: Option<Sky>, start: Instant) -> Self {
+        let deadline = settings.deadline(start);
         let plan = Plan::new(&scene, &settings);
         let host: Arc<dyn Host> =
-            Arc::new(super::host::host(&scene.camera, &settings, &scene.textures, Some(accel.clone())));
+            Arc::new(super::host::host(&scene.camera, &settings, &scene.textures, Some(accel.clone())).until(deadline));
         let mut shading = Shading::new(settings.closure, host.clone());
         let object_emission = radiance::constant_emission(&scene, &plan, &mut shading);
         let powers = radiance::light_powers(&scene, &plan, &mut shading, &object_emission);
@@ -52,6 +56,7 @@ impl World {
         World {
             camera: RayCamera::new(&scene.camera, settings.width, settings.height),
             accel,
+            deadline,
             lights: Lights::new(&scene.geometry, &powers, settings.light_choice, settings.light_points),
             host,
             sky,
@@ -61,6 +66,12 @@ impl World {
             scene,
             settings,
         }
+    }
+
+    /// Is the time up?
+    #[inline]
+    pub fn late(&self) -> bool {
+        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
     /// The material of a primitive.
