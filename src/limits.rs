@@ -22,6 +22,9 @@ pub const SAID_LENGTH: usize = 1 << 20;
 /// Messages that a command prints of one kind of trouble, such as what shaders say in a render; then "and N more".
 pub const PRINTED: usize = 1000;
 
+/// Bytes of the messages that a command prints.
+pub const PRINTED_BYTES: usize = 1 << 22;
+
 /// Numbers in all variables of a shader at one point, arrays and structs with all that is in them. A batch has 512 points, which
 /// makes half a gigabyte.
 pub const NUMBERS: u64 = 1 << 18;
@@ -35,8 +38,8 @@ pub const CLOSURE_NODES: usize = 1 << 18;
 /// Numbers in the columns of the closure tree of a batch, 64 MB.
 pub const CLOSURE_NUMBERS: usize = 1 << 24;
 
-/// Lobes of a batch, and as many layers over them, and weights on their way. At 512 points a lobe takes some 8 kB, a layer 4.
-pub const LOBES: usize = 1 << 13;
+/// Lobes of a batch, and as many layers over them, and weights on their way. At 512 points all together take some 300 MB.
+pub const LOBES: usize = 1 << 12;
 
 /// Steps that a regular expression may go back in one text.
 pub const PATTERN_STEPS: usize = 100_000;

@@ -22,7 +22,7 @@ impl Checker<'_> {
         let message = format!("{} has more numbers than the {NUMBERS} that a shader may have", ty.named());
         let diagnostic = Diagnostic::error("E0507", spec.span, message);
         self.report(diagnostic.help("every point of a batch has its own copy: make its arrays shorter"));
-        Type::FLOAT
+        Type::VOID
     }
 
     fn written_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {

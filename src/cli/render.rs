@@ -8,7 +8,7 @@ use super::watch::TimeBound;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
-use crate::limits::PRINTED;
+use crate::limits::{PRINTED, PRINTED_BYTES};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::{Explanation, Image, LightChoice, LightPoints, Progress, Renderer, Settings, Terminator, output};
 use crate::scene::{Scene, ShaderFiles};
@@ -201,8 +201,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         [settings.width, settings.height] = stated;
     }
     settings.threads = capped(args.threads);
-    // Loading is part of the time.
-    settings.seconds = args.time.map(|seconds| (seconds - start.elapsed().as_secs_f64()).max(1e-3));
+    settings.seconds = args.time.map(|seconds| time_to_trace(seconds, start, &settings));
     if let Some(tolerance) = args.tolerance {
         settings.closure = chosen(args, tolerance, settings.closure);
     }
@@ -295,9 +294,21 @@ fn chosen(args: &RenderArgs, tolerance: f64, closure: closure::Settings) -> clos
     choice.closure
 }
 
+/// What loading has left of a time, and writing the picture will need of it: a tenth of a microsecond a pixel.
+fn time_to_trace(seconds: f64, start: Instant, settings: &Settings) -> f64 {
+    let writing = f64::from(settings.width) * f64::from(settings.height) * 1e-7;
+    (seconds - start.elapsed().as_secs_f64() - writing.min(0.5 * seconds)).max(1e-3)
+}
+
 /// Passes on what shaders said.
 fn pass_on(reports: &[Report]) {
-    for report in reports.iter().take(PRINTED) {
+    let mut bytes = 0;
+    let mut fits = |report: &&Report| {
+        bytes += report.text.len();
+        bytes <= PRINTED_BYTES
+    };
+    let told = reports.iter().take(PRINTED).take_while(&mut fits).count();
+    for report in &reports[..told] {
         match &report.kind {
             ReportKind::Output => say(&report.text),
             ReportKind::File(_) => tell(&report.to_string()),
@@ -306,8 +317,8 @@ fn pass_on(reports: &[Report]) {
             }
         }
     }
-    if reports.len() > PRINTED {
-        tell(&format!("and {} more\n", reports.len() - PRINTED));
+    if reports.len() > told {
+        tell(&format!("and {} more\n", reports.len() - told));
     }
 }
 

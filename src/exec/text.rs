@@ -157,10 +157,16 @@ impl Run<'_> {
         Arc::new((self.group.locate)(span))
     }
 
+    /// Is there room for another mistake?
+    pub(super) fn tells_mistakes(&self) -> bool {
+        self.s.mistakes.len() < MOST_MISTAKES
+    }
+
     /// Reports a mistake that shading survives, once a batch, among what its lane prints.
     pub(super) fn report_once(&mut self, lane: usize, span: Span, mistake: Mistake, text: String) {
         let known = (span, text);
-        if self.s.mistakes.len() < MOST_MISTAKES && !self.s.mistakes.contains(&known) {
+        self.charge(10);
+        if self.tells_mistakes() && !self.s.mistakes.contains(&known) {
             let (kind, place, text) = (ReportKind::Mistake(mistake), self.place(span), known.1.clone());
             self.say(Report { kind, place, lane, text });
             self.s.mistakes.push(known);

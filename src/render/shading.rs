@@ -88,7 +88,7 @@ impl Shading {
         self.lobes.flatten_sides(group.library(), tree, &self.viewer, ng, backfacing);
         let mut news = Vec::new();
         if let Some(node) = self.lobes.crowded() {
-            let place = tree.site(node).map(|site| group.place(site)).unwrap_or_default();
+            let place = tree.site_near(node).map(|site| group.place(site)).unwrap_or_default();
             news.push(Report::fatal(place, format!("a batch has more than {LOBES} lobes, or layers over them")));
         }
         if !self.lobes.dropped().is_empty() {

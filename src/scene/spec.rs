@@ -225,13 +225,10 @@ impl<'t> Parser<'t> {
         let length = match digits {
             "" => None,
             // No parameter has more, and a slip of the pen does not ask for all memory.
-            _ => Some(
-                digits
-                    .parse()
-                    .ok()
-                    .filter(|n| (1..=NUMBERS as usize).contains(n))
-                    .ok_or_else(|| SceneError::at(place, SceneProblem::ArrayLength { text: digits.to_owned() }))?,
-            ),
+            _ => Some(digits.parse().ok().filter(|n| (1..=NUMBERS as usize).contains(n)).ok_or_else(|| {
+                SceneError::at(place, SceneProblem::ArrayLength { text: digits.to_owned() })
+                    .with_help(format!("an array has 1 to {NUMBERS} elements"))
+            })?),
         };
         self.take_char(']');
         Ok(Some(length))

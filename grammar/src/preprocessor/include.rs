@@ -40,7 +40,8 @@ impl Preprocessor<'_> {
                     .label("not read")
                     .help("does a file include itself? put `#pragma once` at its top"),
             );
-            return;
+            // One message is enough of what would go on without end.
+            return self.stop();
         }
         self.spend(INCLUDE_TOKENS, Some(place));
         if self.stopped {

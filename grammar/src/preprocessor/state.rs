@@ -126,6 +126,13 @@ impl Preprocessor<'_> {
         self.spend(cost, included_from.or(place));
     }
 
+    /// Ends the run: nothing more is read.
+    pub(super) fn stop(&mut self) {
+        self.stopped = true;
+        self.frames.clear();
+        self.inputs.clear();
+    }
+
     /// Pays for tokens. When nothing is left the run ends with one message.
     pub(super) fn spend(&mut self, tokens: usize, place: Option<Place>) {
         if self.stopped {
@@ -134,9 +141,7 @@ impl Preprocessor<'_> {
         match self.budget.checked_sub(tokens) {
             Some(left) => self.budget = left,
             None => {
-                self.stopped = true;
-                self.frames.clear();
-                self.inputs.clear();
+                self.stop();
                 let span = place.map_or(Span::NONE, |p| self.table.aside(p, crate::source::NO_CALL));
                 self.diagnostics.push(
                     Diagnostic::error("E0114", span, format!("macros and includes produce more than {TOKENS} tokens"))

@@ -255,6 +255,8 @@ impl<'o> Job<'o> {
     fn tell_one(&mut self, report: Report) -> Result<(), Failure> {
         match &report.kind {
             ReportKind::Output => say(&report.text),
+            // In a sandbox shaders write nothing, as they do in renders.
+            ReportKind::File(_) if self.options.sandbox.is_some() => tell(&report.to_string()),
             ReportKind::File(name) => append(name, &report.text)?,
             ReportKind::Warning | ReportKind::Error | ReportKind::Mistake(_) => {
                 let line = line(&report, &self.group);
@@ -321,6 +323,9 @@ fn shown(x: f32, int: bool) -> String {
 
 /// `fprintf` goes to its file.
 fn append(name: &str, text: &str) -> Result<(), Failure> {
+    if std::fs::metadata(name).is_ok_and(|found| !found.is_file()) {
+        return Err(Failure::Usage(format!("{name}: error: cannot be written: it is no regular file")));
+    }
     let file = std::fs::OpenOptions::new().append(true).create(true).open(name);
     let written = file.and_then(|mut file| file.write_all(text.as_bytes()));
     written.map_err(|error| Failure::Usage(format!("{name}: error: cannot be written: {error}")))
