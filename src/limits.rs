@@ -7,6 +7,9 @@
 //! Decision (2026-11-29): constants, instead of settings that each caller hands through: a limit that differs from host to host makes
 //! shaders that run here and not there, and a host that wants less has `--memory`, `--time` and `Machine::budget`.
 
+/// Work of a batch, in simple instructions over all of it: a second or two.
+pub const WORK: u64 = 20_000_000;
+
 /// Bytes of all strings that a batch makes together, 64 MB.
 pub const TEXT_BYTES: usize = 1 << 26;
 
@@ -31,6 +34,24 @@ pub const NUMBERS: u64 = 1 << 18;
 
 /// Instructions of a program before it is optimised: a group of shaders with all functions expanded in place.
 pub const INSTRUCTIONS: usize = 1 << 20;
+
+/// Statements and expressions of a shader with all functions expanded in place.
+pub const EXPANDED: u64 = 4_000_000;
+
+/// Elements of one array.
+pub const ELEMENTS: i32 = 16_384;
+
+/// Messages (`setmessage`) of different names or types in a batch.
+pub const LEFT_MESSAGES: usize = 1024;
+
+/// Numbers in those messages at one point.
+pub const LEFT_NUMBERS: u32 = 1 << 16;
+
+/// Dictionaries that a batch reads.
+pub const DICTIONARIES: usize = 1024;
+
+/// Nodes of dictionaries that a shader holds at one point.
+pub const FOUND_NODES: usize = 10_000;
 
 /// Nodes of the closure tree of a batch.
 pub const CLOSURE_NODES: usize = 1 << 18;
@@ -61,6 +82,9 @@ pub const ATTRIBUTES: usize = 1024;
 
 /// Bytes of a mesh: some twenty million triangles.
 pub const MESH_BYTES: u64 = 2 << 30;
+
+/// Corners of a face.
+pub const CORNERS: usize = 10_000;
 
 /// Bytes of an MTL file.
 pub const LIBRARY_BYTES: u64 = 16 << 20;

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The work that one batch may do before its shader counts as endless, in simple instructions over a whole batch: a second or two.
 /// What costs more counts for more, by its lanes and by the bytes of its texts.
-pub const DEFAULT_BUDGET: u64 = 20_000_000;
+pub const DEFAULT_BUDGET: u64 = crate::limits::WORK;
 
 /// Runs shader groups over batches of points.
 pub struct Machine {

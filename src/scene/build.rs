@@ -78,16 +78,13 @@ impl<'c> Builder<'c> {
     /// # Errors
     /// All elements together make more triangles than a scene may have; said before any is made.
     pub fn announce(&mut self, e: &Element) -> Result<(), SceneError> {
+        if let ("Model", Some(filename)) = (e.tag(), e.node.attribute("filename")) {
+            *self.later_models.entry(filename.to_owned()).or_default() += 1;
+        }
         self.announced = self.announced.saturating_add(match e.tag() {
             "Sphere" | "Quad" => 1,
             "Flakes" => Flakes::read(e).map_or(0, |flakes| flakes.triangles()),
             "Weave" => Weave::read(e).map_or(0, |weave| weave.triangles()),
-            "Model" => {
-                if let Some(filename) = e.node.attribute("filename") {
-                    *self.later_models.entry(filename.to_owned()).or_default() += 1;
-                }
-                0
-            }
             _ => 0,
         });
         self.check_size(e)
