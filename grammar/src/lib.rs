@@ -21,7 +21,9 @@ mod decode;
 mod depth;
 pub mod diagnostic;
 mod explain;
+pub mod files;
 mod lexer;
+pub mod limits;
 mod literal;
 mod preprocessor;
 pub mod print;
@@ -60,6 +62,8 @@ pub struct Options {
     pub own_files: Vec<(String, String)>,
     /// Name and text of a file that is read before the user's: the standard header.
     pub prelude: Option<(String, String)>,
+    /// Which files `#include` may read.
+    pub access: files::Access,
 }
 
 /// What parsing gives.

@@ -4,6 +4,7 @@ use super::typed::{Function, FunctionId, Shader, Stmt, VarId, Variable};
 use crate::lang::closures::ClosureTable;
 use crate::lang::globals::GLOBALS;
 use crate::lang::types::{Struct, Type};
+use crate::limits::EXPANDED;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use velour_grammar::{Diagnostic, Diagnostics, Span};
@@ -171,7 +172,6 @@ impl<'a> Checker<'a> {
 
     /// Functions are expanded in place, so a few lines of calls within calls can grow without bound.
     fn limit_expansion(&mut self, span: Span) {
-        const LIMIT: u64 = 4_000_000;
         let mut sizes: Vec<Option<u64>> = vec![None; self.signatures.len()];
         let mut open: Vec<usize> = (0..self.signatures.len()).collect();
         while let Some(&at) = open.last() {
@@ -187,7 +187,7 @@ impl<'a> Checker<'a> {
             }
         }
         let whole = self.shader_calls.iter().filter_map(|call| sizes[call.0.0 as usize]);
-        if whole.fold(0, u64::saturating_add) > LIMIT {
+        if whole.fold(0, u64::saturating_add) > EXPANDED {
             let message =
                 "the shader is too large: functions are expanded in place, and here they call each other too often";
             self.report(

@@ -4,16 +4,25 @@ use super::context::{Checker, Signature, Symbol};
 use super::typed::{self, FunctionId, VarId};
 use crate::lang::builtins;
 use crate::lang::types::{Base, Element, Length, Struct, Type};
+use crate::limits::{ELEMENTS, NUMBERS};
 use std::sync::Arc;
 use velour_grammar::ast::{ArrayLen, FunctionDecl, Metadata, Param, ShaderDecl, StructDecl, TypeName, TypeSpec};
 use velour_grammar::{Diagnostic, Span};
 
-/// The most elements of one array. Every point of a batch has its own copy of an array.
-const MAX_ELEMENTS: i32 = 16_384;
-
 impl Checker<'_> {
     /// The type written, with its array brackets.
     pub fn resolve_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
+        let ty = self.written_type(spec, array);
+        if ty.numbers(NUMBERS) <= NUMBERS {
+            return ty;
+        }
+        let message = format!("{} has more numbers than the {NUMBERS} that a shader may have", ty.named());
+        let diagnostic = Diagnostic::error("E0507", spec.span, message);
+        self.report(diagnostic.help("every point of a batch has its own copy: make its arrays shorter"));
+        Type::VOID
+    }
+
+    fn written_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
         let base = match &spec.base {
             _ if spec.closure => Base::Closure,
             TypeName::Int => Base::Int,
@@ -44,10 +53,10 @@ impl Checker<'_> {
         match array {
             ArrayLen::Single => Length::Single,
             ArrayLen::Unsized => Length::Unsized,
-            ArrayLen::Sized(n) if n > MAX_ELEMENTS => {
+            ArrayLen::Sized(n) if n > ELEMENTS => {
                 let diagnostic =
                     Diagnostic::error("E0507", span, format!("an array of {n} elements is too large for a shader"));
-                self.report(diagnostic.help(format!("{MAX_ELEMENTS} elements are the most")));
+                self.report(diagnostic.help(format!("{ELEMENTS} elements are the most")));
                 Length::Fixed(1)
             }
             ArrayLen::Sized(n) if n > 0 => Length::Fixed(n as u32),

@@ -2,10 +2,15 @@
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
-use super::speak::{colored, say, tell};
+use super::speak::{colored, say, say_as_it_is, tell};
+use super::watch::TimeBound;
 use crate::compile::Compiler;
-use std::io::Read;
+use crate::files::Destination;
+use crate::limits::SHADER_BYTES;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
+use velour_grammar::files::Access;
 use velour_grammar::{Diagnostics, Format, Sources};
 
 /// How messages look.
@@ -47,6 +52,9 @@ pub struct CheckArgs {
     /// Where the output of -E or -M goes; shaders are compiled when they run, so there is no other
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// End with an error when this takes more than S seconds
+    #[arg(long, value_name = "S")]
+    time: Option<f64>,
     #[command(flatten)]
     depend: DependArgs,
     #[command(flatten)]
@@ -72,10 +80,11 @@ struct DependArgs {
 
 /// Checks the files; all of them, whatever the first ones contain.
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
+    let _bound = TimeBound::new(Instant::now(), args.time, "before all was checked");
     let compiler = args.compile.compiler()?;
     let (mut wrong, mut unreadable) = (false, false);
     for path in &args.files {
-        let (name, bytes) = match read(path) {
+        let (name, bytes) = match read(path, &compiler.options.access) {
             Ok(read) => read,
             Err(message) => {
                 tell(&message);
@@ -93,12 +102,14 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
 }
 
 /// A file's name for messages and what is in it.
-fn read(path: &Path) -> Result<(String, Vec<u8>), String> {
+fn read(path: &Path, access: &Access) -> Result<(String, Vec<u8>), String> {
     let standard = path == Path::new("-");
     let name = if standard { "<stdin>".to_owned() } else { path.display().to_string() };
     let mut bytes = Vec::new();
-    let read =
-        if standard { std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes) } else { std::fs::read(path) };
+    let read = match standard {
+        true => std::io::stdin().lock().take(SHADER_BYTES).read_to_end(&mut bytes).map(|_| bytes),
+        false => access.read(path, SHADER_BYTES).map_err(std::io::Error::from),
+    };
     read.map(|bytes| (name.clone(), bytes)).map_err(|error| format!("{name}: error: cannot be read: {error}\n"))
 }
 
@@ -159,9 +170,9 @@ fn depend(args: &CheckArgs, compiler: &Compiler, name: &str, sources: &Sources) 
 /// Writes a text to a file, or to standard output.
 fn put(file: Option<&Path>, text: &str) -> Result<(), Failure> {
     let Some(file) = file else {
-        say(text);
+        say_as_it_is(text);
         return Ok(());
     };
-    std::fs::write(file, text)
-        .map_err(|error| Failure::Usage(format!("{}: error: cannot be written: {error}", file.display())))
+    let written = Destination::at(file).and_then(|file| file.write(|sink| sink.write_all(text.as_bytes())));
+    written.map_err(|error| Failure::Usage(format!("{}: error: cannot be written: {error}", file.display())))
 }

@@ -20,14 +20,15 @@ const SIGNALS: [(i32, u8); 2] = [(SIGINT, 130), (SIGTERM, 143)];
 pub struct Signals([Arc<AtomicBool>; 2]);
 
 impl Signals {
-    /// Listens from now on.
-    pub fn listen() -> Result<Self, Failure> {
+    /// Listens from now on, and has `stop` set by either.
+    pub fn listen(stop: &Arc<AtomicBool>) -> Result<Self, Failure> {
         let asked = [Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false))];
         for ((signal, status), flag) in SIGNALS.into_iter().zip(&asked) {
             // In this order: the one that looks at the flag comes before the one that sets it.
             let second = signal_hook::flag::register_conditional_shutdown(signal, i32::from(status), flag.clone());
-            let both = second.and_then(|_| signal_hook::flag::register(signal, flag.clone()));
-            both.map_err(|error| Failure::Usage(format!("error: signals cannot be listened to: {error}")))?;
+            let first = second.and_then(|_| signal_hook::flag::register(signal, flag.clone()));
+            let all = first.and_then(|_| signal_hook::flag::register(signal, stop.clone()));
+            all.map_err(|error| Failure::Usage(format!("error: signals cannot be listened to: {error}")))?;
         }
         Ok(Signals(asked))
     }
@@ -39,17 +40,16 @@ impl Signals {
     }
 }
 
-/// A bar on a terminal, nothing elsewhere; stops a round when a part is to be written or somebody has asked to end.
-struct Watch<'a> {
+/// A bar on a terminal, nothing elsewhere; stops a round when a part is to be written.
+struct Watch {
     bar: ProgressBar,
-    signals: &'a Signals,
     due: Option<Instant>,
     /// Tiles that the rounds before this one have done.
     before: AtomicUsize,
     total: AtomicUsize,
 }
 
-impl Progress for Watch<'_> {
+impl Progress for Watch {
     fn tiles(&self, done: usize, total: usize) {
         // A round that goes on where another was stopped has fewer tiles than all.
         let all = self.total.fetch_max(total, Ordering::Relaxed).max(total);
@@ -59,7 +59,7 @@ impl Progress for Watch<'_> {
     }
 
     fn cancelled(&self) -> bool {
-        self.signals.asked().is_some() || self.due.is_some_and(|due| Instant::now() >= due)
+        self.due.is_some_and(|due| Instant::now() >= due)
     }
 }
 
@@ -96,7 +96,7 @@ impl Keeping<'_> {
         let every = self.every.filter(|_| self.part_file().is_some()).map(Duration::from_secs_f64);
         let due = || every.map(|every| Instant::now() + every);
         let (before, total) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let mut watch = Watch { bar, signals, due: due(), before, total };
+        let mut watch = Watch { bar, due: due(), before, total };
         let done = loop {
             let left = renderer.round(&watch).map_err(Failure::of_render)?;
             if !left || signals.asked().is_some() {

@@ -17,5 +17,6 @@ mod speak;
 mod threads;
 mod tree;
 mod verify;
+mod watch;
 
 pub use command::run;

@@ -4,11 +4,13 @@ use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::keep::{Keeping, Signals};
 use super::share::Share;
-use super::speak::{say, tell};
+use super::speak::{leave_output, say, tell};
 use super::threads::capped;
+use super::watch::TimeBound;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
+use crate::limits::{PRINTED, PRINTED_BYTES};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::part::{self, Ranges};
 use crate::render::{About, Explanation, LightChoice, LightPoints, Renderer, Settings, Terminator, output};
@@ -28,7 +30,7 @@ pub struct RenderArgs {
     /// The image, as testrender takes it
     #[arg(value_name = "IMAGE", conflicts_with = "output")]
     image: Option<PathBuf>,
-    /// Threads; 0 for one a core, and at most 64 or four for each
+    /// Threads; 0 for one a core, and at most four for each
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
     /// Width and height in pixels [default: what the scene states, or 640 480]
@@ -176,12 +178,17 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         let text = "error: --res and --debug-pixel are given once\n  help: take one of them out";
         return Err(Failure::Usage(text.to_owned()));
     }
+    if output::is_standard_output(path) {
+        leave_output();
+    }
+    let loading = TimeBound::new(start, args.time, "while the scene was made ready");
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     args.testrender.note();
     let compiler = ShaderFiles::new(args.compile.compiler()?).lenient(!args.strict);
     let mut scene = Scene::load(&args.scene, &args.path, &compiler).map_err(Failure::of_scene)?;
-    if let Some(megabytes) = args.texture_memory {
-        scene.textures = Arc::new(scene.textures.limited(megabytes << 20));
+    let textures = args.texture_memory.map(|megabytes| megabytes.saturating_mul(1 << 20));
+    if let Some(bytes) = textures.or(args.compile.memory.map(|bytes| bytes / 2)) {
+        scene.textures = Arc::new(scene.textures.limited(bytes));
     }
     for warning in &scene.warnings {
         tell(&format!("{warning}\n"));
@@ -199,6 +206,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         [settings.width, settings.height] = stated;
     }
     settings.threads = capped(args.threads);
+    settings.seconds = args.time.map(|seconds| time_to_trace(seconds, start, &settings));
     if let Some(tolerance) = args.tolerance {
         settings.closure = chosen(args, tolerance, settings.closure);
     }
@@ -206,6 +214,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         say(&Explanation::new(&scene, &settings).to_string());
     }
     let mut renderer = Renderer::new(&scene, &settings).map_err(Failure::of_render)?;
+    drop(loading);
     if !renderer.plan().gives_light() {
         tell("warning: nothing in the scene gives light, so it is black\n");
     }
@@ -219,7 +228,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let every = Some(args.checkpoint).filter(|seconds| *seconds > 0.0);
     let keeping = Keeping { output: path, every, parts: args.leaves_part() };
-    let signals = Signals::listen()?;
+    let signals = Signals::listen(renderer.stop())?;
     let done = keeping.render(&mut renderer, &signals)?;
     let about = renderer.picture().about;
     pass_on(&about.reports);
@@ -238,9 +247,9 @@ fn check_output(args: &RenderArgs, path: &std::path::Path) -> Result<(), Failure
     if args.samples.as_ref().is_some_and(|ranges| ranges.iter().count() != 1) {
         return usage("--samples takes one range, such as 64..128\n  help: render the ranges apart and merge them");
     }
-    if format != output::Format::Exr {
+    if (args.samples.is_some() || args.share.is_some()) && format != output::Format::Exr {
         return usage(
-            "--samples leaves a part of a picture, which is an .exr\n  help: `velour merge part.exr -o picture.png` makes another file of it",
+            "--samples and --share leave a part of a picture, which is an .exr\n  help: `velour merge part.exr -o picture.png` makes another file of it",
         );
     }
     Ok(())
@@ -314,9 +323,21 @@ fn chosen(args: &RenderArgs, tolerance: f64, closure: closure::Settings) -> clos
     choice.closure
 }
 
+/// What loading has left of a time, and writing the picture will need of it: a tenth of a microsecond a pixel.
+fn time_to_trace(seconds: f64, start: Instant, settings: &Settings) -> f64 {
+    let writing = f64::from(settings.width) * f64::from(settings.height) * 1e-7;
+    (seconds - start.elapsed().as_secs_f64() - writing.min(0.5 * seconds)).max(1e-3)
+}
+
 /// Passes on what shaders said.
 fn pass_on(reports: &[Report]) {
-    for report in reports {
+    let mut bytes = 0;
+    let mut fits = |report: &&Report| {
+        bytes += report.text.len();
+        bytes <= PRINTED_BYTES
+    };
+    let told = reports.iter().take(PRINTED).take_while(&mut fits).count();
+    for report in &reports[..told] {
         match &report.kind {
             ReportKind::Output => say(&report.text),
             ReportKind::File(_) => tell(&report.to_string()),
@@ -324,6 +345,9 @@ fn pass_on(reports: &[Report]) {
                 tell(&format!("{report}\n"));
             }
         }
+    }
+    if reports.len() > told {
+        tell(&format!("and {} more\n", reports.len() - told));
     }
 }
 

@@ -4,6 +4,7 @@ use super::error::CompileError;
 use super::shader::Shader;
 use crate::check::check;
 use crate::closure::Library;
+use crate::limits::SHADER_BYTES;
 use std::path::Path;
 use std::sync::Arc;
 use velour_grammar::{Diagnostics, Options, Severity, Sources, parse, parse_bytes};
@@ -141,7 +142,11 @@ impl Compiler {
     /// The file cannot be read, or its text is wrong.
     pub fn compile_file(&self, path: &Path) -> Result<Shader, CompileError> {
         let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|error| CompileError::File { name: name.clone(), error })?;
+        let bytes = self
+            .options
+            .access
+            .read(path, SHADER_BYTES)
+            .map_err(|error| CompileError::File { name: name.clone(), error: error.into() })?;
         Self::require(self.check_bytes(&name, &bytes))
     }
 

@@ -51,6 +51,8 @@ pub enum RenderError {
     },
     /// The threads could not be started, for this reason.
     Threads(String),
+    /// The time was up before the picture had a first sample.
+    Late,
     /// A thread has failed, which is a mistake in this crate.
     ThreadFailed,
     /// A shader cannot be run, for this reason, which begins with a place where there is one.
@@ -72,6 +74,7 @@ impl fmt::Display for RenderError {
             ),
             RenderError::Threads(reason) => write!(f, "the threads could not be started: {reason}"),
             RenderError::ThreadFailed => f.write_str("a thread has failed"),
+            RenderError::Late => f.write_str("the time was up before the picture had a first sample"),
         }
     }
 }
@@ -85,6 +88,7 @@ impl std::error::Error for RenderError {
             | RenderError::Material { .. }
             | RenderError::Threads(_)
             | RenderError::ThreadFailed
+            | RenderError::Late
             | RenderError::Shader(_) => None,
         }
     }

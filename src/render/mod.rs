@@ -80,6 +80,7 @@ mod shading;
 mod sky;
 mod smooth;
 mod stages;
+mod stop;
 mod through;
 mod tile;
 mod told;

@@ -12,6 +12,7 @@ use super::progress::Progress;
 use super::rounds::{Rounds, Task};
 use super::settings::Settings;
 use super::sky::Sky;
+use super::stop::Stop;
 use super::tile::Tile;
 use super::trace::render_tile;
 use super::wave::Wave;
@@ -19,7 +20,7 @@ use super::world::World;
 use crate::exec::{Group, Report, ReportPlace};
 use crate::scene::{Camera, Scene};
 use std::fmt;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
@@ -97,6 +98,12 @@ impl Gathered {
         self.reports.extend(wave.shading.take_reports());
     }
 
+    /// Is there anything at all when the time is up?
+    fn check_time(&self) -> Result<(), RenderError> {
+        let nothing = self.rounds.late() && self.rounds.taken().all(|samples| samples == 0);
+        if nothing { Err(RenderError::Late) } else { Ok(()) }
+    }
+
     /// The first report that a shader cannot be run.
     fn check(&self) -> Result<(), RenderError> {
         let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
@@ -117,10 +124,12 @@ impl Renderer {
         settings.check().map_err(RenderError::Settings)?;
         check_camera(&scene.camera)?;
         let pool = pool(settings)?;
+        let stop = Arc::new(Stop::new(Arc::default()));
+        stop.begin(settings, start);
         let make = || {
-            let (scene, reports) = displaced(scene, settings)?;
+            let (scene, reports) = displaced(scene, settings, &stop)?;
             let accel = Arc::new(Accel::new(&scene.geometry));
-            let mut world = World::new(accel, scene, settings.clone(), None);
+            let mut world = World::new(accel, scene, settings.clone(), None, stop.clone());
             world.reports.extend(reports.iter().cloned());
             Ok((world, reports))
         };
@@ -160,6 +169,12 @@ impl Renderer {
         &self.world.accel
     }
 
+    /// Ends the round that is running, and all that follow, once it is set: from another thread, or by a signal. What is unfinished
+    /// in the middle of a shader is left out.
+    pub fn stop(&self) -> &Arc<AtomicBool> {
+        self.world.stop.asked()
+    }
+
     /// Renders the next round; true says that something is left to do, also when `progress` has stopped the round.
     ///
     /// A render of a fixed number of samples is one round. One that stops by noise or time has as many as it takes.
@@ -174,18 +189,20 @@ impl Renderer {
     pub fn round_of(&mut self, samples: u32, progress: &dyn Progress) -> Result<bool, RenderError> {
         let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         gathered.check()?;
+        gathered.check_time()?;
         let tasks = gathered.rounds.next(&self.world.settings, samples);
         let start = Instant::now();
         self.trace(&tasks, progress);
         let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         gathered.seconds_tracing += start.elapsed().as_secs_f64();
         gathered.check()?;
+        gathered.check_time()?;
         Ok(gathered.rounds.look(&self.world.settings, &gathered.film))
     }
 
     /// Renders round after round until nothing is left to do or `progress` asks to stop.
     pub fn finish(&mut self, progress: &dyn Progress) -> Result<(), RenderError> {
-        while self.round(progress)? && !progress.cancelled() {}
+        while self.round(progress)? && !progress.cancelled() && !self.world.stop.now() {}
         Ok(())
     }
 
@@ -193,9 +210,7 @@ impl Renderer {
     fn trace(&self, tasks: &[Task], progress: &dyn Progress) {
         let Renderer { world, waves, gathered, .. } = self;
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let deadline = gathered.lock().ok().and_then(|all| all.rounds.deadline());
-        let late = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        let stop = || progress.cancelled() || late();
+        let stop = || world.stop.now() || progress.cancelled();
         self.pool.broadcast(|thread| {
             let Ok(mut wave) = waves[thread.index()].lock() else { return };
             let wave = wave.get_or_insert_with(|| Wave::new(world));
@@ -240,7 +255,7 @@ impl Renderer {
             rays: all.rays,
             seconds_preparing: self.seconds_preparing,
             seconds_tracing: all.seconds_tracing,
-            reports: reports(&self.world.scene, all.reports.clone(), &all.dropped),
+            reports: self.reports(all),
         }
     }
 
@@ -285,6 +300,19 @@ impl Renderer {
         }
     }
 
+    /// What was said, and what is missing.
+    fn reports(&self, all: &Gathered) -> Vec<Report> {
+        let mut reports = reports(&self.world.scene, all.reports.clone(), &all.dropped);
+        let empty = all.rounds.taken().filter(|samples| *samples == 0).count();
+        if empty > 0 && all.rounds.late() {
+            let share = 100.0 * empty as f64 / all.rounds.held().len() as f64;
+            let text =
+                format!("warning: the time was up before {share:.0} % of the picture had a sample; that part is black");
+            reports.push(Report::warning(text));
+        }
+        reports
+    }
+
     /// Starts the picture anew.
     pub fn restart(&mut self) {
         for wave in &mut self.waves {
@@ -293,7 +321,9 @@ impl Renderer {
                 Ok(None) | Err(_) => *wave = Mutex::new(None),
             }
         }
-        self.gathered = Mutex::new(Gathered::new(&self.world, Instant::now()));
+        let start = Instant::now();
+        self.world.stop.begin(&self.world.settings, start);
+        self.gathered = Mutex::new(Gathered::new(&self.world, start));
     }
 
     /// Looks through another camera; the picture starts anew.
@@ -343,8 +373,9 @@ impl Renderer {
     /// Makes the world anew but for its hierarchy, and for its background where one is given.
     fn remake(&mut self, scene: Scene, settings: Settings, sky: Option<Sky>) {
         let start = Instant::now();
-        let accel = self.world.accel.clone();
-        self.world = self.pool.install(|| World::new(accel, scene, settings, sky));
+        let (accel, stop) = (self.world.accel.clone(), self.world.stop.clone());
+        stop.begin(&settings, start);
+        self.world = self.pool.install(|| World::new(accel, scene, settings, sky, stop));
         self.world.reports.extend(self.said_moving.iter().cloned());
         self.seconds_preparing = start.elapsed().as_secs_f64();
         self.fingerprint = OnceLock::new();

@@ -42,6 +42,10 @@ fn trace(world: &World, wave: &mut Wave, stop: &dyn Fn() -> bool) -> bool {
             }
         }
         trace_shadows(world, wave);
+        // What a shader has left in the middle is worth nothing.
+        if wave.shading.given_up() {
+            return false;
+        }
         wave.advance();
         bounce += 1;
     }
@@ -69,6 +73,7 @@ pub fn render_tile(
 ) -> u32 {
     let halves = world.settings.halves();
     sums.open(tile, halves);
+    wave.shading.go_on();
     let mut first = samples.start;
     while first < samples.end {
         let mut end = samples.end;
@@ -90,8 +95,7 @@ pub fn render_tile(
 /// Adds `samples` of each of the tile's pixels to one half of sums, and gives one behind the last that was added.
 ///
 /// Whole pixels are traced at a time when few samples make a wave, else as many samples of all pixels as fill it. What is begun when
-/// `stop` says so is left out, for a sample that some pixels have and others do not could not be gone on from; a wave too small for
-/// all pixels of a tile is therefore brought to its end, once its first part is in.
+/// `stop` says so is left out, for a sample that some pixels have and others do not could not be gone on from.
 fn render_part(
     world: &World,
     wave: &mut Wave,
@@ -106,13 +110,17 @@ fn render_part(
     let pixels_at_once = (wave_size / per_pixel).clamp(1, count);
     for first_sample in samples.clone().step_by(per_pixel as usize) {
         let range = first_sample..samples.end.min(first_sample + per_pixel);
+        let before = (pixels_at_once < count).then(|| sums.clone());
         for first in (0..count).step_by(pixels_at_once as usize) {
             let end = count.min(first + pixels_at_once);
             wave.clear();
             for pixel in first..end {
                 camera::start(world, wave, tile.x + pixel % tile.width, tile.y + pixel / tile.width, range.clone());
             }
-            if !trace(world, wave, if first == 0 { stop } else { &|| false }) {
+            if !trace(world, wave, stop) {
+                if let Some(before) = before {
+                    *sums = before;
+                }
                 return first_sample;
             }
             for sample in range.clone() {

@@ -4,6 +4,7 @@ use super::macros::Macro;
 use super::scan::{Kind, PpToken, scan};
 use crate::Options;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::limits::TOKENS;
 use crate::source::{Place, SourceFile, SourceTable};
 use crate::span::Span;
 use std::collections::{HashMap, HashSet};
@@ -11,9 +12,6 @@ use std::hash::{BuildHasherDefault, Hasher};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
-
-/// How many tokens files and macros may produce together.
-const BUDGET: usize = 4_000_000;
 
 /// The FNV-1a hash: every name is looked up once, and names are short.
 #[derive(Clone, Copy)]
@@ -85,6 +83,8 @@ pub(super) struct Preprocessor<'o> {
     /// Keys of the files that said `#pragma once`.
     pub(super) once: HashSet<PathBuf>,
     pub(super) budget: usize,
+    /// Bytes of the files that were read.
+    pub(super) bytes: u64,
     /// Set when the budget is spent: nothing more is read.
     pub(super) stopped: bool,
     /// Set while the arguments of a macro call are gathered: the end of a file ends them.
@@ -104,7 +104,8 @@ impl<'o> Preprocessor<'o> {
             inputs: Vec::new(),
             frames: Vec::new(),
             once: HashSet::new(),
-            budget: BUDGET,
+            budget: TOKENS,
+            bytes: 0,
             stopped: false,
             gathering: false,
             depth: 0,
@@ -125,6 +126,13 @@ impl Preprocessor<'_> {
         self.spend(cost, included_from.or(place));
     }
 
+    /// Ends the run: nothing more is read.
+    pub(super) fn stop(&mut self) {
+        self.stopped = true;
+        self.frames.clear();
+        self.inputs.clear();
+    }
+
     /// Pays for tokens. When nothing is left the run ends with one message.
     pub(super) fn spend(&mut self, tokens: usize, place: Option<Place>) {
         if self.stopped {
@@ -133,12 +141,10 @@ impl Preprocessor<'_> {
         match self.budget.checked_sub(tokens) {
             Some(left) => self.budget = left,
             None => {
-                self.stopped = true;
-                self.frames.clear();
-                self.inputs.clear();
+                self.stop();
                 let span = place.map_or(Span::NONE, |p| self.table.aside(p, crate::source::NO_CALL));
                 self.diagnostics.push(
-                    Diagnostic::error("E0114", span, format!("macros and includes produce more than {BUDGET} tokens"))
+                    Diagnostic::error("E0114", span, format!("macros and includes produce more than {TOKENS} tokens"))
                         .label("the limit was passed here")
                         .help("look for macros that repeat their argument and call each other, or a file that includes itself"),
                 );

@@ -71,6 +71,12 @@ pub struct Options {
     pub unoptimized: bool,
     /// Count parameters that userdata may fill as connected.
     pub userdata_isconnected: bool,
+    /// Seconds that this may take.
+    pub time: Option<f64>,
+    /// Bytes that this may hold.
+    pub memory: Option<u64>,
+    /// The folder that everything read has to lie in.
+    pub sandbox: Option<PathBuf>,
     /// Tell more.
     pub verbose: bool,
     /// Tell instructions and times.
@@ -116,6 +122,9 @@ impl Default for Options {
             threads: 0,
             unoptimized: false,
             userdata_isconnected: false,
+            time: None,
+            memory: None,
+            sandbox: None,
             verbose: false,
             stats: false,
             groupname: String::new(),
@@ -165,6 +174,9 @@ const KNOWN: &[Known] = &[
     (&["t"], &["N"], "Threads; 0 for one a core"),
     (&["O0"], &[], "Compile without optimising"),
     (&["options"], &["LIST"], "Settings of OSL's shading system; those with a meaning here: searchpath:shader"),
+    (&["time"], &["S"], "End with an error when this takes more than S seconds"),
+    (&["memory"], &["BYTES"], "Bytes that this may hold, such as 2G or 512M; it ends when it needs more"),
+    (&["sandbox"], &["DIR"], "Read no file outside of this folder, whatever input names"),
     (&["stats", "runstats"], &[], "Print instructions before and after optimising, and time a point"),
     (&["v"], &[], "Print the group and what is done"),
     (&["h", "help"], &[], "Print this"),
@@ -290,6 +302,9 @@ fn apply(name: &str, modifiers: &str, given: &[String], options: &mut Options) -
         "t" => options.threads = number(&given[0])?,
         "O0" => options.unoptimized = true,
         "options" => settings(&given[0], options),
+        "time" => options.time = Some(number(&given[0])?),
+        "memory" => options.memory = Some(crate::cli::watch::bytes(&given[0]).map_err(usage)?),
+        "sandbox" => options.sandbox = Some(PathBuf::from(&given[0])),
         "stats" => options.stats = true,
         "v" => options.verbose = true,
         "h" => options.help = true,

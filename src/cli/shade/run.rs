@@ -10,12 +10,15 @@ use crate::cli::compile::CompileArgs;
 use crate::cli::failure::Failure;
 use crate::cli::speak::{say, tell};
 use crate::cli::threads::capped;
+use crate::cli::watch::TimeBound;
 use crate::exec::{Group, Host, MAX_LANES, Machine, Points, Report, ReportKind, Values};
+use crate::files::Destination;
 use crate::ir::lower::Lazy;
 use crate::ops::format::{FormatArg, format};
 use crate::scene::{GroupCompiler, GroupSpec, ShaderFiles};
 use rayon::prelude::*;
 use std::collections::HashSet;
+use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -30,9 +33,11 @@ pub fn run(words: &[String]) -> Result<(), Failure> {
         say(&help());
         return Ok(());
     }
+    let _bound = TimeBound::new(Instant::now(), options.time, "before all was shaded");
     let compile = CompileArgs::of(options.include.clone(), options.define.clone(), options.undefine.clone());
+    let compile = compile.bounded(options.sandbox.clone(), options.memory);
     let (mut spec, files) = group(&options, compile.compiler()?)?;
-    let host: Arc<dyn Host> = Arc::new(PatchHost::new(&options)?);
+    let host: Arc<dyn Host> = Arc::new(PatchHost::new(&options, compile.access()?)?);
     announce(&options, &spec);
     let mut compiled = compile_group(&options, &spec, &files)?;
     list_layers(&options, &spec, &files)?;
@@ -94,7 +99,7 @@ fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Re
     let group = files.finish(builder, spec).map_err(wrong)?;
     files.take_warnings().iter().for_each(|warning| tell(&format!("{warning}\n")));
     if let Some(path) = &options.archive {
-        let written = std::fs::write(path, spec.text());
+        let written = Destination::at(path).and_then(|file| file.write(|sink| sink.write_all(spec.text().as_bytes())));
         written.map_err(|error| Failure::Usage(format!("{}: error: {error}", path.display())))?;
     }
     Ok(group)
@@ -250,6 +255,8 @@ impl<'o> Job<'o> {
     fn tell_one(&mut self, report: Report) -> Result<(), Failure> {
         match &report.kind {
             ReportKind::Output => say(&report.text),
+            // In a sandbox shaders write nothing, as they do in renders.
+            ReportKind::File(_) if self.options.sandbox.is_some() => tell(&report.to_string()),
             ReportKind::File(name) => append(name, &report.text)?,
             ReportKind::Warning | ReportKind::Error | ReportKind::Mistake(_) => {
                 let line = line(&report, &self.group);
@@ -316,7 +323,9 @@ fn shown(x: f32, int: bool) -> String {
 
 /// `fprintf` goes to its file.
 fn append(name: &str, text: &str) -> Result<(), Failure> {
-    use std::io::Write;
+    if std::fs::metadata(name).is_ok_and(|found| !found.is_file()) {
+        return Err(Failure::Usage(format!("{name}: error: cannot be written: it is no regular file")));
+    }
     let file = std::fs::OpenOptions::new().append(true).create(true).open(name);
     let written = file.and_then(|mut file| file.write_all(text.as_bytes()));
     written.map_err(|error| Failure::Usage(format!("{name}: error: cannot be written: {error}")))

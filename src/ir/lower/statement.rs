@@ -9,6 +9,9 @@ use velour_grammar::Span;
 impl Lower<'_> {
     pub(super) fn stmts(&mut self, stmts: &[Stmt]) {
         for stmt in stmts {
+            if self.b.is_full() {
+                return;
+            }
             self.stmt(stmt);
         }
     }
