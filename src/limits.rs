@@ -77,6 +77,9 @@ pub const SCENE_VALUES: usize = 1 << 24;
 /// Bytes of a scene's text.
 pub const SCENE_BYTES: u64 = 1 << 28;
 
+/// Elements, texts and attributes' values of a scene, some 400 MB as the parser keeps them.
+pub const SCENE_NODES: u32 = 4_000_000;
+
 /// Attributes of an element: the parser of XML compares each with all others.
 pub const ATTRIBUTES: usize = 1024;
 
@@ -85,6 +88,9 @@ pub const MESH_BYTES: u64 = 2 << 30;
 
 /// Corners of a face.
 pub const CORNERS: usize = 10_000;
+
+/// Steps for cutting the polygons of a mesh into triangles, some seconds.
+pub const CUTTING_STEPS: u64 = 1_000_000_000;
 
 /// Bytes of an MTL file.
 pub const LIBRARY_BYTES: u64 = 16 << 20;

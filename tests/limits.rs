@@ -224,6 +224,20 @@ fn scenes_are_bounded() {
     let attributes: String = (0..40_000).map(|i| format!("a{i}=\"1\" ")).collect();
     place.scene("f8c", "shader ok l;", &format!("<Sphere {attributes}/>"));
     place.refuses("f8c", &place.render("f8c"), "more than 1024 attributes");
+    place.file("nodes.xml", format!("<World>{}</World>", "<a/>".repeat(5_000_000)));
+    place.refuses("nodes", &place.render("nodes"), "nodes limit");
+    // A spiral has a face that no corner can be cut from for long.
+    let spiral = |k: usize, out: f64| {
+        let (turn, r) = (k as f64 * 0.05, 1.0 + k as f64 * 1e-3 + out);
+        format!("v {} {} 0\n", r * turn.cos(), r * turn.sin())
+    };
+    let corners: String = (0..5000).map(|k| spiral(k, 0.0)).chain((0..5000).rev().map(|k| spiral(k, 0.005))).collect();
+    let face: String = (1..=10_000).map(|k| format!(" {k}")).collect();
+    place.file("spiral.obj", format!("{corners}f{face}\nf{face}\nf{face}\n"));
+    place.scene("spiral", "shader ok l;", "<Model filename=\"spiral.obj\"/>");
+    let ran = place.render("spiral");
+    place.done("spiral", &ran);
+    assert!(ran.err.contains("too many corners to be cut well"), "{}", ran.err);
     place.file("deep.xml", format!("<World>{}{}</World>", "<a>".repeat(200_000), "</a>".repeat(200_000)));
     place.refuses("deep", &place.render("deep"), "unknown tag <a>");
     place.scene("value", "shader ok l;", &format!("<Sphere center=\"{}x\" radius=\"1\"/>", "1".repeat(3_000_000)));

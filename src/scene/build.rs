@@ -24,7 +24,7 @@ const TAGS: [&str; 9] = ["Option", "Camera", "Sphere", "Quad", "Model", "Weave",
 const OPTIONS: [&str; 5] = ["max_bounces", "rr_depth", "aa", "no_jitter", "show_globals"];
 const GROUP_TAGS: [&str; 3] = ["Parameter", "Shader", "ConnectShaders"];
 
-/// The side of the background's importance table when the scene does not say.
+/// The side of the background's table when the scene does not say.
 const DEFAULT_BACKGROUND_RESOLUTION: u32 = 1024;
 
 /// A scene in the making.
@@ -245,19 +245,17 @@ impl<'c> Builder<'c> {
                 .with_help(format!("looked in {}", looked.join(", "))));
         };
         let wrong = |flaw| SceneError::at(place.clone(), SceneProblem::Mesh { file: path.display().to_string(), flaw });
-        let file = match self.meshes.remove(&path) {
+        let mut file = match self.meshes.remove(&path) {
             Some(file) => file,
-            None => {
-                let file = MeshFile::read(&path, &access).map_err(wrong)?;
-                self.scene.warnings.extend(file.warnings.iter().cloned());
-                file
-            }
+            None => MeshFile::read(&path, &access).map_err(wrong)?,
         };
+        // Those of a file are told once.
+        self.scene.warnings.append(&mut file.warnings);
         self.announced = self.announced.saturating_add(file.triangles());
         self.check_size(e)?;
         let names = MaterialNames { by_name: &self.by_name, last };
-        let added = add_mesh(&mut self.geometry, &file, placement.as_ref(), &names, &place).map_err(wrong)?;
-        self.warn_of_mesh(filename, &place, &added);
+        let added = add_mesh(&mut self.geometry, &file, placement.as_ref(), &names, &place);
+        self.warn_of_mesh(filename, &place, &added.map_err(wrong)?);
         // Kept for the next element of this file; none comes, and it goes with the last one that is told of.
         if self.later_models.get_mut(filename).is_some_and(|left| std::mem::replace(left, left.saturating_sub(1)) > 1) {
             self.meshes.insert(path, file);
@@ -272,6 +270,9 @@ impl<'c> Builder<'c> {
         } else if added.degenerate > 0 {
             let count = added.degenerate;
             warnings.push(format!("{place}: warning: {count} triangles of `{filename}` have no area and are left out"));
+        }
+        if added.hurried {
+            warnings.push(format!("{place}: warning: polygons of `{filename}` have too many corners to be cut well"));
         }
         if let [first, others @ ..] = &added.unmatched[..] {
             let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };

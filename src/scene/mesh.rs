@@ -4,7 +4,7 @@ use super::error::{MeshFlaw, Place};
 use super::geometry::{Geometry, Object, Primitive, Shape};
 use super::obj::{self, Corner, Note, ObjFlaw, ObjMesh};
 use super::placement::Placement;
-use crate::limits::{LIBRARY_BYTES, MESH_BYTES};
+use crate::limits::{CUTTING_STEPS, LIBRARY_BYTES, MESH_BYTES};
 use glam::Vec3;
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
@@ -98,6 +98,8 @@ pub struct Added {
     pub kept: usize,
     /// Triangles without one, which are left out.
     pub degenerate: usize,
+    /// Some polygons were cut anyhow, as all together have too many corners.
+    pub hurried: bool,
     /// Material names without a shader group, where others have one.
     pub unmatched: Vec<String>,
 }
@@ -131,6 +133,7 @@ pub fn add_mesh(
         share_area(adder.geometry, first);
     }
     let mut added = adder.added;
+    added.hurried = adder.steps == 0;
     if by_material {
         added.unmatched = used
             .into_iter()
@@ -158,6 +161,8 @@ struct Adder<'a> {
     /// Corners of a polygon, and its triangles.
     points: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
+    /// Steps that are left for cutting polygons.
+    steps: u64,
 }
 
 impl<'a> Adder<'a> {
@@ -181,7 +186,7 @@ impl<'a> Adder<'a> {
         geometry.uvs.reserve(if mesh.uvs.is_empty() { 0 } else { triangles });
         let mirrors = placement.is_some_and(Placement::mirrors);
         let (added, points, triangles) = (Added::default(), Vec::new(), Vec::new());
-        Ok(Adder { geometry, mesh, positions, normals, mirrors, added, points, triangles })
+        Ok(Adder { geometry, mesh, positions, normals, mirrors, added, points, triangles, steps: CUTTING_STEPS })
     }
 
     /// Adds faces of one material to the object of it, of those from `first` on, or to a new one.
@@ -209,7 +214,7 @@ impl<'a> Adder<'a> {
         self.points.extend(corners.iter().map(|corner| self.positions[corner.position as usize]));
         let mut triangles = std::mem::take(&mut self.triangles);
         triangles.clear();
-        obj::triangulate(&self.points, &mut triangles);
+        obj::triangulate(&self.points, &mut self.steps, &mut triangles);
         let area = triangles.iter().map(|t| self.triangle(t.map(|i| corners[i as usize]), object)).sum();
         self.triangles = triangles;
         area

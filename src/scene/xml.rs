@@ -3,9 +3,9 @@
 use super::error::{Place, SceneError, SceneProblem};
 use super::nearest::nearest;
 use super::places::Places;
-use crate::limits::ATTRIBUTES;
+use crate::limits::{ATTRIBUTES, SCENE_NODES};
 use glam::Vec3;
-use roxmltree::{Attribute, Document, Node};
+use roxmltree::{Attribute, Document, Node, ParsingOptions};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -24,7 +24,8 @@ pub fn parse<'i>(text: &'i str, file: &Arc<str>) -> Result<Document<'i>, SceneEr
         let reason = format!("an element has more than {ATTRIBUTES} attributes");
         return Err(not_xml(Places::new(file, text).at(offset), reason).with_help("use several elements"));
     }
-    Document::parse(text).map_err(|e| {
+    let options = ParsingOptions { nodes_limit: SCENE_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|e| {
         let pos = e.pos();
         let place = Place { file: file.clone(), line: pos.row, column: pos.col };
         // The parser ends its sentence with the position, which the place already says.
