@@ -9,6 +9,7 @@ mod hand;
 mod instructions;
 mod layers;
 mod noises;
+mod textures;
 mod tops;
 mod weave;
 
@@ -109,6 +110,7 @@ fn main() {
     let table = Table { words: std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect() };
     instructions::rows(&table);
     noises::rows(&table);
+    textures::rows(&table);
     weave::rows(&table);
     closures::rows(&table);
     tops::rows(&table);
