@@ -6,6 +6,7 @@ use crate::lang::types::Type;
 use std::sync::Arc;
 use velour_grammar::Span;
 use velour_grammar::ast::{BinaryOp, ShaderKind, UnaryOp};
+use velour_grammar::names::Name;
 
 /// Index into [`Shader::variables`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -66,7 +67,7 @@ pub struct Metadata {
 #[derive(Clone, Debug)]
 pub struct Variable {
     /// The name it was declared with.
-    pub name: String,
+    pub name: Name,
     /// Its type.
     pub ty: Type,
     /// Where it was declared.
@@ -98,15 +99,15 @@ pub enum Stmt {
     /// Statements in a scope of their own.
     Block(Vec<Stmt>),
     /// A choice; the condition is an int.
-    If(Expr, Vec<Stmt>, Vec<Stmt>),
+    If(Box<Expr>, Vec<Stmt>, Vec<Stmt>),
     /// A loop.
     Loop {
         /// Runs once before the loop.
         init: Vec<Stmt>,
         /// Tested before each round (after it when `test_last`); an int. Missing means true.
-        condition: Option<Expr>,
+        condition: Option<Box<Expr>>,
         /// Runs after each round.
-        step: Option<Expr>,
+        step: Option<Box<Expr>>,
         /// The body.
         body: Vec<Stmt>,
         /// True for `do … while`.
