@@ -5,6 +5,7 @@
 //! ratio is the median of the ratios of each turn.
 
 mod closures;
+mod grids;
 mod hand;
 mod instructions;
 mod layers;
@@ -115,4 +116,5 @@ fn main() {
     closures::rows(&table);
     tops::rows(&table);
     layers::rows(&table);
+    grids::rows(&table);
 }

@@ -16,3 +16,4 @@ mod tree;
 mod verify;
 
 pub use command::run;
+pub use shade::Rounds;

@@ -7,11 +7,14 @@
 mod grid;
 mod group;
 mod host;
+mod job;
 mod options;
+mod rounds;
 mod run;
 mod save;
 mod wording;
 
+pub use rounds::Rounds;
 pub use run::run;
 
 /// Arguments of `velour shade`; see `--help`.
