@@ -3,6 +3,10 @@
 //! An [`Expr`] drops its children without recursion, however deep the tree; so its fields cannot be moved out by a
 //! pattern: borrow them, or take them with `std::mem::take` and the like. See the crate's page for the depth to expect.
 //!
+//! Decision (2026-11-30): a name shares its text with all others of its spelling, and what is large and rare is boxed, because the tree of
+//! ten thousand lines then takes 9 MB instead of 15 and a third less instructions to make and check; instead of a string a name, and of an arena,
+//! whose indices every reader would have to look up.
+//!
 //! Nodes own their children. Every node that a message may point at carries a [`Span`]; parentheses leave no node.
 
 use crate::names::Name;

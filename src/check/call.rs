@@ -285,7 +285,7 @@ impl Checker<'_> {
             keywords.retain(|(known, _): &(u32, Expr)| *known != at as u32);
             keywords.push((at as u32, value));
         }
-        Expr::new(ExprKind::Closure(id, params, keywords), Type::CLOSURE, span)
+        Expr::new(ExprKind::Closure(id, params.into(), keywords.into()), Type::CLOSURE, span)
     }
 
     /// Warns of a keyword that a closure does not have. The tags of `debug` are the host's own.

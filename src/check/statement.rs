@@ -35,7 +35,7 @@ impl Checker<'_> {
             if let Some(init) = init {
                 let (ty, span) = (init.ty.clone(), init.span);
                 let place = Place { var, path: Vec::new(), ty: ty.clone() };
-                let assign = Expr::new(ExprKind::Assign(place, Box::new(init)), ty, span);
+                let assign = Expr::new(ExprKind::Assign(Box::new(place), Box::new(init)), ty, span);
                 assigned.push(Stmt::Expr(assign));
             }
         }

@@ -134,7 +134,7 @@ pub struct Expr {
     pub span: Span,
 }
 
-/// The checked expressions.
+/// The checked expressions. What is rare and large is boxed: a shader of ten thousand lines is made of a hundred thousand of these.
 #[derive(Clone, Debug)]
 pub enum ExprKind {
     /// An integer.
@@ -156,13 +156,13 @@ pub enum ExprKind {
     /// Values in order; the last one is the value.
     Comma(Vec<Expr>),
     /// Assignment; the value is the new one.
-    Assign(Place, Box<Expr>),
+    Assign(Box<Place>, Box<Expr>),
     /// Read, change and write back: `a op= b`.
-    Update(BinaryOp, Place, Box<Expr>),
+    Update(BinaryOp, Box<Place>, Box<Expr>),
     /// `++` and `--`: the amount (1 or -1), and whether the value is the new one.
     Step {
         /// What is changed.
-        place: Place,
+        place: Box<Place>,
         /// True for `++`.
         increment: bool,
         /// True when the value is the new one.
@@ -173,7 +173,7 @@ pub enum ExprKind {
     /// A call of a builtin.
     Builtin(&'static str, Vec<Argument>),
     /// A closure with its positional and keyword parameters.
-    Closure(ClosureId, Vec<Expr>, Vec<(u32, Expr)>),
+    Closure(ClosureId, Box<[Expr]>, Box<[(u32, Expr)]>),
     /// A triple or a matrix made of floats.
     Construct(Vec<Expr>),
     /// A triple or matrix made of floats that are given in a named space.
