@@ -25,6 +25,7 @@ pub mod files;
 mod lexer;
 pub mod limits;
 mod literal;
+pub mod names;
 mod preprocessor;
 pub mod print;
 mod render;
@@ -89,6 +90,7 @@ pub fn parse(name: &str, text: &str, options: &Options) -> Parsed {
         return Parsed { file: ast::File::default(), sources, diagnostics };
     }
     let mut tokens = lexer::lex(&done.tokens, &sources, &mut diagnostics);
+    drop(done.tokens);
     if let Some(message) = brackets::too_deep(&tokens) {
         diagnostics.push(message);
         return Parsed { file: ast::File::default(), sources, diagnostics };

@@ -5,8 +5,9 @@ use crate::lang::closures::ClosureTable;
 use crate::lang::globals::GLOBALS;
 use crate::lang::types::{Struct, Type};
 use crate::limits::EXPANDED;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::sync::Arc;
+use velour_grammar::names::{Name, NameMap};
 use velour_grammar::{Diagnostic, Diagnostics, Span};
 
 /// What a name means in a scope.
@@ -33,7 +34,7 @@ pub(super) struct Signature {
 pub(super) struct Checker<'a> {
     pub closures: &'a ClosureTable,
     pub diagnostics: Diagnostics,
-    pub scopes: Vec<HashMap<String, Symbol>>,
+    pub scopes: Vec<NameMap<Name, Symbol>>,
     pub variables: Vec<Variable>,
     /// Whether each variable may be assigned.
     pub writable: Vec<bool>,
@@ -59,7 +60,7 @@ impl<'a> Checker<'a> {
         let mut checker = Checker {
             closures,
             diagnostics: Diagnostics::default(),
-            scopes: vec![HashMap::new()],
+            scopes: vec![NameMap::default()],
             variables: Vec::new(),
             writable: Vec::new(),
             foreign: HashSet::new(),
@@ -75,9 +76,9 @@ impl<'a> Checker<'a> {
         for &(name, global, base, writable) in GLOBALS {
             let id = VarId(checker.variables.len() as u32);
             let (ty, global) = (Type::of(base), Some(global));
-            checker.variables.push(Variable { name: name.to_owned(), ty, span: Span::NONE, global });
+            checker.variables.push(Variable { name: name.into(), ty, span: Span::NONE, global });
             checker.writable.push(writable);
-            checker.scopes[0].insert(name.to_owned(), Symbol::Var(id));
+            checker.scopes[0].insert(name.into(), Symbol::Var(id));
         }
         checker
     }
@@ -108,18 +109,18 @@ impl<'a> Checker<'a> {
 
     /// Runs `body` in a scope of its own.
     pub fn scoped<T>(&mut self, body: impl FnOnce(&mut Self) -> T) -> T {
-        self.scopes.push(HashMap::new());
+        self.scopes.push(NameMap::default());
         let result = body(self);
         self.scopes.pop();
         result
     }
 
     /// Makes a variable and binds its name in the innermost scope.
-    pub fn bind(&mut self, name: &str, ty: Type, span: Span, writable: bool) -> VarId {
+    pub fn bind(&mut self, name: &Name, ty: Type, span: Span, writable: bool) -> VarId {
         let id = VarId(self.variables.len() as u32);
-        self.variables.push(Variable { name: name.to_owned(), ty, span, global: None });
+        self.variables.push(Variable { name: name.clone(), ty, span, global: None });
         self.writable.push(writable);
-        let earlier = self.scopes.last_mut().and_then(|scope| scope.insert(name.to_owned(), Symbol::Var(id)));
+        let earlier = self.scopes.last_mut().and_then(|scope| scope.insert(name.clone(), Symbol::Var(id)));
         if let Some(Symbol::Var(earlier)) = earlier {
             let before = self.variables[earlier.0 as usize].span;
             let diagnostic = Diagnostic::error("E0404", span, format!("`{name}` is declared twice in this scope"));

@@ -93,9 +93,9 @@ impl Checker<'_> {
                     "write the length in the brackets",
                 );
             }
-            fields.push((field.name.name.clone(), ty));
+            fields.push((field.name.name.to_string(), ty));
         }
-        let structure = Arc::new(Struct { name: decl.name.name.clone(), fields });
+        let structure = Arc::new(Struct { name: decl.name.name.to_string(), fields });
         let scope = self.scopes.len() - 1;
         if let Some(Symbol::Struct(_)) = self.scopes[scope].insert(decl.name.name.clone(), Symbol::Struct(structure)) {
             self.error(
@@ -137,7 +137,7 @@ impl Checker<'_> {
                 .also(decl.name.span, "declared here");
             self.report(diagnostic.help("write `return value;`, or declare it `void`"));
         }
-        let function = typed::Function { name: decl.name.name.clone(), returns, params, body };
+        let function = typed::Function { name: decl.name.name.to_string(), returns, params, body };
         self.bodies[id.0 as usize] = Some(Arc::new(function));
     }
 
@@ -151,7 +151,7 @@ impl Checker<'_> {
         let builtin = decl.metadata.iter().any(|entry| entry.name.name == "builtin");
         let closure = decl.return_type.closure;
         if builtin && closure {
-            self.foreign.insert(name.clone());
+            self.foreign.insert(name.to_string());
         }
         builtin && closure
     }
@@ -208,7 +208,7 @@ impl Checker<'_> {
         }
         let id = FunctionId(self.signatures.len() as u32);
         self.signatures.push(Signature {
-            name: name.clone(),
+            name: name.to_string(),
             returns: returns.clone(),
             formals: formals.to_vec(),
             span: decl.span,
@@ -228,7 +228,7 @@ impl Checker<'_> {
             let body = c.check_block(&decl.body);
             typed::Shader {
                 kind: decl.kind,
-                name: decl.name.name.clone(),
+                name: decl.name.name.to_string(),
                 span: decl.span,
                 metadata,
                 params,
@@ -270,7 +270,7 @@ impl Checker<'_> {
         for entry in list {
             let mut ty = self.resolve_type(&entry.ty, entry.array);
             let value = self.check_initial(&entry.value, &mut ty);
-            out.push(typed::Metadata { ty, name: entry.name.name.clone(), value });
+            out.push(typed::Metadata { ty, name: entry.name.name.to_string(), value });
         }
         out
     }

@@ -81,7 +81,7 @@ fn file(args: &InfoArgs, path: &Path) -> Result<(), Failure> {
     })?;
     let mut shader = (*shader.typed).clone();
     if let Some(name) = &args.param {
-        shader.params.retain(|param| shader.variables[param.var.0 as usize].name == *name);
+        shader.params.retain(|param| shader.variables[param.var.0 as usize].name == name.as_str());
         if shader.params.is_empty() {
             return Err(Failure::Wrong(format!("error: shader `{}` has no parameter `{name}`", shader.name)));
         }

@@ -20,3 +20,4 @@ mod verify;
 mod watch;
 
 pub use command::run;
+pub use shade::Rounds;

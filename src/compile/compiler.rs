@@ -46,6 +46,8 @@ pub struct Checked {
     pub diagnostics: Diagnostics,
     /// The text they refer to.
     pub sources: Sources,
+    /// What was parsed. Whoever ends after this need not take the time to free it.
+    pub tree: velour_grammar::ast::File,
 }
 
 impl Checked {
@@ -123,7 +125,7 @@ impl Compiler {
                 closures: self.closures.clone(),
             });
         }
-        let mut checked = Checked { shader, diagnostics, sources: parsed.sources };
+        let mut checked = Checked { shader, diagnostics, sources: parsed.sources, tree: parsed.file };
         checked.drop_quiet();
         checked
     }
@@ -151,7 +153,7 @@ impl Compiler {
     }
 
     fn require(checked: Checked) -> Result<Shader, CompileError> {
-        let Checked { shader, diagnostics, sources } = checked;
+        let Checked { shader, diagnostics, sources, .. } = checked;
         shader.ok_or(CompileError::Text { diagnostics, sources })
     }
 }

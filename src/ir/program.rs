@@ -235,6 +235,8 @@ pub struct Program {
     pub result: Option<Reg>,
     /// Named results.
     pub outputs: Vec<Output>,
+    /// Instructions there were before the optimizer; 0 in a program it has not seen.
+    pub lowered: usize,
 }
 
 impl Program {

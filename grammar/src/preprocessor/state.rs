@@ -5,39 +5,17 @@ use super::scan::{Kind, PpToken, scan};
 use crate::Options;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::limits::TOKENS;
+use crate::names::NameMap;
 use crate::source::{Place, SourceFile, SourceTable};
 use crate::span::Span;
-use std::collections::{HashMap, HashSet};
-use std::hash::{BuildHasherDefault, Hasher};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// The FNV-1a hash: every name is looked up once, and names are short.
-#[derive(Clone, Copy)]
-pub(super) struct Fnv(u64);
-
-impl Default for Fnv {
-    fn default() -> Self {
-        Fnv(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Hasher for Fnv {
-    fn write(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-
-    fn finish(&self) -> u64 {
-        self.0
-    }
-}
-
 /// A file that is being read.
 pub(super) struct Input {
-    pub(super) tokens: Rc<[PpToken]>,
+    pub(super) tokens: Rc<Vec<PpToken>>,
     pub(super) cursor: usize,
     pub(super) file: u32,
     pub(super) conditions: Vec<Conditional>,
@@ -77,7 +55,7 @@ pub(super) struct Preprocessor<'o> {
     pub(super) options: &'o Options,
     pub(super) table: SourceTable,
     pub(super) diagnostics: Diagnostics,
-    pub(super) macros: HashMap<String, Rc<Macro>, BuildHasherDefault<Fnv>>,
+    pub(super) macros: NameMap<String, Rc<Macro>>,
     pub(super) inputs: Vec<Input>,
     pub(super) frames: Vec<Frame>,
     /// Keys of the files that said `#pragma once`.
@@ -100,7 +78,7 @@ impl<'o> Preprocessor<'o> {
             options,
             table: SourceTable::new(),
             diagnostics: Diagnostics::default(),
-            macros: HashMap::default(),
+            macros: NameMap::default(),
             inputs: Vec::new(),
             frames: Vec::new(),
             once: HashSet::new(),
@@ -117,7 +95,7 @@ impl Preprocessor<'_> {
     /// Puts a text on the stack of files.
     pub(super) fn open(&mut self, name: &str, text: Arc<str>, included_from: Option<Place>) {
         let file = self.table.files.len() as u32;
-        let tokens: Rc<[PpToken]> = scan(&text, file).into();
+        let tokens = Rc::new(scan(&text, file));
         let place = tokens.first().map(|t| t.place);
         self.table.files.push(SourceFile::new(name, text, included_from));
         let folder = std::path::Path::new(name).parent().map(PathBuf::from);
