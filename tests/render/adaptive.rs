@@ -141,6 +141,6 @@ fn small_and_odd_pictures_are_whole() {
 fn a_noise_and_a_time_stop_at_whichever_comes_first() {
     let image = figure(|s| (s.samples, s.noise, s.seconds) = (1 << 20, Some(0.05), Some(1e4)));
     assert!(image.about.noise.unwrap() <= 0.05);
-    let image = figure(|s| (s.samples, s.noise, s.seconds) = (1 << 20, Some(1e-9), Some(0.2)));
+    let image = figure(|s| (s.samples, s.noise, s.seconds) = (1 << 20, Some(1e-9), Some(2.0)));
     assert!(image.about.noise.unwrap() > 1e-9);
 }
