@@ -20,7 +20,7 @@ enum Command {
     /// Write a first scene and shader
     New(new::NewArgs),
     /// Render a scene to an image
-    Render(render::RenderArgs),
+    Render(Box<render::RenderArgs>),
     /// Merge parts of a picture, which were rendered apart
     Merge(merge::MergeArgs),
     /// Check shaders and report every mistake

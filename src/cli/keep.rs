@@ -76,7 +76,8 @@ pub struct Keeping<'a> {
 impl Keeping<'_> {
     /// The file of parts: the picture itself where it is an EXR, one beside it where it is not; none beside a stream.
     pub fn part_file(&self) -> Option<PathBuf> {
-        if output::is_standard_output(self.output) || !(self.output.is_file() || !self.output.exists()) {
+        let special = self.output.exists() && !self.output.is_file();
+        if special || output::is_standard_output(self.output) {
             return None;
         }
         if self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {

@@ -1,0 +1,53 @@
+//! A process that previews scene after scene keeps no more memory than it had after the first ones.
+//!
+//! `VELOUR_COUNT=2000 cargo test --release --test soak` loads, changes, renders and drops as many scenes.
+#![cfg(target_os = "linux")]
+
+use velour::render::{Renderer, Settings, Silent};
+use velour::scene::{Scene, ShaderFiles};
+
+/// Bytes that the process holds.
+fn resident() -> f64 {
+    let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
+    pages.split(' ').nth(1).unwrap().parse::<f64>().unwrap() * 4096.0
+}
+
+/// A preview of scene `turn`: its shader, its mesh and its messages are its own.
+fn preview(turn: usize) {
+    let cloth = format!(
+        "surface cloth(float r = .3, string name = \"cloth {turn}\") {{ string s = format(\"%s %g\", name, floor(u * 20));
+         if (u > 2) printf(\"%s\", s); Ci = sheen((.5 + {turn}e-5 + .2 * noise(P * 9)) * diffuse(N), N, color(strlen(s) * .05), r); }}"
+    );
+    let files = ShaderFiles::default().with_shader(&cloth).unwrap();
+    let files = files.with_shader("surface sky(float x = .5) { Ci = x * (1 + I[1]) * background(); }").unwrap();
+    let text = format!(
+        "<World><Camera eye=\"0,1,5\" look_at=\"0,0,0\" fov=\"40\"/>
+         <ShaderGroup>shader sky l;</ShaderGroup><Background resolution=\"16\"/>
+         <ShaderGroup name=\"c\">shader cloth l;</ShaderGroup><Weave corner=\"-1,0,1\" edge_x=\"2,0,0\" edge_y=\"0,0,-2\" warp=\"{}\" weft=\"9\"/></World>",
+        6 + turn % 5
+    );
+    let scene = Scene::load(&text, &[], &files).unwrap();
+    let settings = Settings { width: 32, height: 16, samples: 2, threads: 2, ..Settings::default() };
+    let mut renderer = Renderer::new(&scene, &settings).unwrap();
+    renderer.finish(&Silent).unwrap();
+    let mut camera = scene.camera;
+    camera.fov += 1.0;
+    renderer.set_camera(camera).unwrap();
+    renderer.round_of(1, &Silent).unwrap();
+    let cloth = renderer.material("c").unwrap();
+    renderer.set_material(cloth, scene.materials[cloth].surface.clone()).unwrap();
+    renderer.finish(&Silent).unwrap();
+    assert!(renderer.picture().mean()[0] > 0.05);
+}
+
+#[test]
+fn memory_stays_flat() {
+    let count: usize = std::env::var("VELOUR_COUNT").ok().and_then(|text| text.parse().ok()).unwrap_or(90);
+    (0..count / 3).for_each(preview);
+    let before = resident();
+    (count / 3..count).for_each(preview);
+    let after = resident();
+    println!("{count} scenes: {:.1} MB after a third of them, {:.1} MB at the end", before / 1e6, after / 1e6);
+    // What the allocator holds of pools and stacks differs by a few pages from run to run.
+    assert!(after < 1.05 * before + 1e6, "{before} bytes became {after}");
+}
