@@ -1,9 +1,10 @@
-//! `velour check`: reports every mistake in shader files, with the options of OSL's oslc.
+//! `velour check` and `velour compile`: report every mistake in shader files, with the options of OSL's oslc; the second also
+//! writes how right ones are compiled.
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::speak::{colored, say, tell};
-use crate::compile::Compiler;
+use crate::compile::{Compiler, Recipe, Shader};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use velour_grammar::{Diagnostics, Format, Sources};
@@ -20,7 +21,7 @@ pub enum MessageFormat {
     Json,
 }
 
-/// Arguments of `velour check`.
+/// Arguments of `velour check` and `velour compile`.
 #[derive(clap::Args)]
 pub struct CheckArgs {
     /// Shader files; `-` for standard input
@@ -44,7 +45,7 @@ pub struct CheckArgs {
     /// Stop after the preprocessor and print its output
     #[arg(short = 'E')]
     preprocess: bool,
-    /// Where the output of -E or -M goes; shaders are compiled when they run, so there is no other
+    /// Where the output of -E or -M goes, or the .oso file of `compile` [default: the shader's name ending with .oso]
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -71,7 +72,7 @@ struct DependArgs {
 }
 
 /// Checks the files; all of them, whatever the first ones contain.
-pub fn run(args: &CheckArgs) -> Result<(), Failure> {
+pub fn run(args: &CheckArgs, make: bool) -> Result<(), Failure> {
     let compiler = args.compile.compiler()?;
     let (mut wrong, mut unreadable) = (false, false);
     for path in &args.files {
@@ -83,7 +84,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
                 continue;
             }
         };
-        wrong |= !one(args, &compiler, &name, &bytes)?;
+        wrong |= !one(args, &compiler, (&name, &bytes), make)?;
     }
     match (unreadable, wrong) {
         (true, _) => Err(Failure::Usage(String::new())),
@@ -102,8 +103,8 @@ fn read(path: &Path) -> Result<(String, Vec<u8>), String> {
     read.map(|bytes| (name.clone(), bytes)).map_err(|error| format!("{name}: error: cannot be read: {error}\n"))
 }
 
-/// Checks one file; true when it is right.
-fn one(args: &CheckArgs, compiler: &Compiler, name: &str, bytes: &[u8]) -> Result<bool, Failure> {
+/// Checks one file, and writes how it is compiled where that is wanted; true when it is right.
+fn one(args: &CheckArgs, compiler: &Compiler, (name, bytes): (&str, &[u8]), make: bool) -> Result<bool, Failure> {
     let right = if args.preprocess {
         let text = String::from_utf8_lossy(bytes);
         let (output, diagnostics, sources) = velour_grammar::preprocess(name, &text, &compiler.options);
@@ -113,12 +114,49 @@ fn one(args: &CheckArgs, compiler: &Compiler, name: &str, bytes: &[u8]) -> Resul
         let checked =
             if args.all_warnings { compiler.check_closely(name, bytes) } else { compiler.check_bytes(name, bytes) };
         depend(args, compiler, name, &checked.sources)?;
-        report(args, checked.diagnostics, &checked.sources)
+        let right = report(args, checked.diagnostics, &checked.sources);
+        if make && !args.depend.only {
+            write_recipe(args, compiler, name, checked.shader.filter(|_| right))?;
+        }
+        right
     };
     if args.verbose && right {
         say(&format!("{name}: right\n"));
     }
     Ok(right)
+}
+
+/// Writes how a right shader is compiled to the working folder, and says so as oslc does.
+fn write_recipe(args: &CheckArgs, compiler: &Compiler, name: &str, shader: Option<Shader>) -> Result<(), Failure> {
+    let Some(shader) = shader else {
+        if !args.quiet {
+            say(&format!("FAILED {name}\n"));
+        }
+        return Ok(());
+    };
+    let failed = |reason: String| Failure::Usage(format!("{name}: error: {reason}"));
+    let whole = |path: &Path| std::path::absolute(path).map_err(|error| failed(error.to_string()));
+    if !Path::new(name).is_file() {
+        return Err(failed("what is to be compiled must be in a file, which is read again when it runs".to_owned()));
+    }
+    let include_dirs: Result<Vec<PathBuf>, Failure> =
+        compiler.options.include_dirs.iter().map(|folder| whole(folder)).collect();
+    let header = args.compile.header().map(whole).transpose()?;
+    let recipe = Recipe {
+        header,
+        source: whole(Path::new(name))?,
+        name: name.to_owned(),
+        include_dirs: include_dirs?,
+        defines: compiler.options.defines.clone(),
+        undefines: compiler.options.undefines.clone(),
+    };
+    let text = recipe.text().ok_or_else(|| failed("a name with a line break cannot be written".to_owned()))?;
+    let target = args.output.clone().unwrap_or_else(|| format!("{}.oso", shader.name()).into());
+    put(Some(&target), &text)?;
+    if !args.quiet {
+        say(&format!("Compiled {name} -> {}\n", target.display()));
+    }
+    Ok(())
 }
 
 /// Tells the messages; true when none is an error.

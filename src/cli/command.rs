@@ -1,6 +1,7 @@
 //! The commands, how their arguments are read, and what the process ends with.
 
 use super::failure::Failure;
+use super::names::named;
 use super::speak::{lost, tell};
 use super::{chart, check, info, new, render, shade, tree, verify};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -23,6 +24,8 @@ enum Command {
     Render(render::RenderArgs),
     /// Check shaders and report every mistake
     Check(check::CheckArgs),
+    /// Check shaders and write .oso files that say how they are compiled, as OSL's oslc is used
+    Compile(check::CheckArgs),
     /// Show the closure tree of a shader
     Tree(tree::TreeArgs),
     /// Run shaders on a grid of points, as OSL's testshade does
@@ -37,7 +40,7 @@ enum Command {
 
 /// Runs the command line and gives the exit status: 0 done, 1 a shader or scene is wrong, 2 usage or files.
 pub fn run() -> ExitCode {
-    let arguments = match Arguments::try_parse_from(gnu_style(std::env::args_os().collect())) {
+    let arguments = match Arguments::try_parse_from(gnu_style(named(std::env::args_os().collect()))) {
         Ok(arguments) => arguments,
         Err(error) => {
             // A pipe that closes early is no reason to complain.
@@ -48,7 +51,8 @@ pub fn run() -> ExitCode {
     let result = match arguments.command {
         Command::New(args) => new::run(&args),
         Command::Render(args) => render::run(&args),
-        Command::Check(args) => check::run(&args),
+        Command::Check(args) => check::run(&args, false),
+        Command::Compile(args) => check::run(&args, true),
         Command::Tree(args) => tree::run(&args),
         Command::Shade(args) => shade::run(&args.words),
         Command::Verify(args) => verify::run(&args),
@@ -76,6 +80,9 @@ fn gnu_style(words: Vec<OsString>) -> Vec<OsString> {
         Some(bare) if !short(bare) && longs.contains(&bare.split('=').next().unwrap_or(bare)) => {
             OsString::from(format!("--{bare}"))
         }
+        // Compilers take the file of these without a space.
+        Some(bare) if bare.starts_with("MF") && longs.contains(&"MF") => OsString::from(format!("--MF={}", &bare[2..])),
+        Some(bare) if bare.starts_with("MT") && longs.contains(&"MT") => OsString::from(format!("--MT={}", &bare[2..])),
         _ => word,
     };
     words.into_iter().map(fixed).collect()

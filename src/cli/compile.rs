@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use crate::compile::Compiler;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// How shaders are compiled.
 #[derive(Args, Clone, Debug, Default)]
@@ -26,6 +26,11 @@ impl CompileArgs {
     /// Folders of included files, and macros that are set and unset.
     pub fn of(include: Vec<PathBuf>, define: Vec<String>, undefine: Vec<String>) -> Self {
         CompileArgs { include, define, undefine, stdosl: None }
+    }
+
+    /// Another standard header than the built-in one.
+    pub fn header(&self) -> Option<&Path> {
+        self.stdosl.as_deref()
     }
 
     /// The compiler they ask for.

@@ -7,6 +7,7 @@ mod compile;
 mod failure;
 mod info;
 mod info_file;
+mod names;
 mod new;
 mod render;
 mod shade;

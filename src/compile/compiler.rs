@@ -1,6 +1,7 @@
 //! What all shaders of a session share, and the way from text to a shader.
 
 use super::error::CompileError;
+use super::recipe::Recipe;
 use super::shader::Shader;
 use crate::check::check;
 use crate::closure::Library;
@@ -135,12 +136,28 @@ impl Compiler {
         Self::require(self.check(name, text))
     }
 
-    /// Compiles a file to a shader.
+    /// Compiles a file to a shader: its text, or a [`Recipe`], whose macros and folders go before those of this compiler.
     ///
     /// # Errors
     /// The file cannot be read, or its text is wrong.
     pub fn compile_file(&self, path: &Path) -> Result<Shader, CompileError> {
-        let name = path.display().to_string();
+        if let Some(recipe) = Recipe::of_file(path) {
+            let mut compiler = self.clone();
+            if let Some(header) = &recipe.header {
+                let name = header.display().to_string();
+                let text = std::fs::read_to_string(header);
+                let text = text.map_err(|error| CompileError::File { name: name.clone(), error })?;
+                compiler = compiler.with_header(&name, &text);
+            }
+            compiler.options.include_dirs.splice(0..0, recipe.include_dirs);
+            compiler.options.defines.splice(0..0, recipe.defines);
+            compiler.options.undefines.splice(0..0, recipe.undefines);
+            return compiler.compile_text_of(&recipe.source, recipe.name);
+        }
+        self.compile_text_of(path, path.display().to_string())
+    }
+
+    fn compile_text_of(&self, path: &Path, name: String) -> Result<Shader, CompileError> {
         let bytes = std::fs::read(path).map_err(|error| CompileError::File { name: name.clone(), error })?;
         Self::require(self.check_bytes(&name, &bytes))
     }

@@ -6,7 +6,7 @@ use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage
 use super::nearest::nearest;
 use super::shipped::shipped;
 use super::source::within;
-use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Shader};
+use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Recipe, Shader};
 use crate::exec::Group;
 use crate::ir::lower::Binding;
 use crate::lang::path::root;
@@ -75,7 +75,13 @@ impl ShaderFiles {
         } else {
             let folders: Vec<String> = search.iter().map(|folder| folder.display().to_string()).collect();
             let problem = SceneProblem::ShaderNotFound { shader: layer.shader.clone() };
-            let help = format!("no `{}.osl` in {}; add folders with --path", layer.shader, folders.join(", "));
+            let code = search.iter().map(|folder| within(folder, &format!("{}.oso", layer.shader)));
+            let help = match code.into_iter().find(|path| path.is_file()) {
+                Some(code) => {
+                    format!("{} is code for OSL's tools; velour needs the text, `{}.osl`", code.display(), layer.shader)
+                }
+                None => format!("no `{}.osl` in {}; add folders with --path", layer.shader, folders.join(", ")),
+            };
             return Err(SceneError::at(layer.place.clone(), problem).with_help(help));
         };
         compiled.map_err(|error| {
@@ -100,13 +106,18 @@ impl ShaderFiles {
     }
 }
 
-/// The file of a shader: `name.osl` or `name` in one of the folders, or `name` as a path; else a file of one of the folders that
-/// declares a shader of this name, the first by its own.
+/// The file of a shader: in one of the folders `name.oso`, where velour has written it, `name.osl` or `name`, or `name` as a path; else a
+/// file of one of the folders that declares a shader of this name, the first by its own.
 pub fn find_shader(name: &str, search: &[PathBuf]) -> Option<PathBuf> {
     let name = name.strip_suffix(".oso").unwrap_or(name);
     let with_extension = if name.ends_with(".osl") { name.to_owned() } else { format!("{name}.osl") };
-    let candidates = search.iter().map(|folder| within(folder, &with_extension));
-    let named = candidates.chain([PathBuf::from(&with_extension)]).find(|path: &PathBuf| Path::is_file(path));
+    let made = if name.ends_with(".osl") { String::new() } else { format!("{name}.oso") };
+    // Who has compiled a shader has said how: with these macros.
+    let there = |path: &PathBuf| {
+        Recipe::of_file(path).is_some() || path.extension().is_none_or(|e| e != "oso") && path.is_file()
+    };
+    let candidates = search.iter().flat_map(|folder| [within(folder, &made), within(folder, &with_extension)]);
+    let named = candidates.chain([PathBuf::from(&made), PathBuf::from(&with_extension)]).find(there);
     named.or_else(|| search.iter().find_map(|folder| declares_in(folder, name)))
 }
 
