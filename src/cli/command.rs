@@ -74,15 +74,20 @@ fn gnu_style(words: Vec<OsString>) -> Vec<OsString> {
     let command = Arguments::command();
     let named = words.get(1).and_then(|word| word.to_str()).unwrap_or_default();
     let Some(chosen) = command.find_subcommand(named).filter(|_| named != "shade") else { return words };
-    let longs: Vec<&str> = chosen.get_arguments().filter_map(|argument| argument.get_long()).collect();
+    let names = |argument: &'_ clap::Arg| -> Vec<String> {
+        let aliases = argument.get_all_aliases().unwrap_or_default();
+        argument.get_long().into_iter().chain(aliases).map(str::to_owned).collect()
+    };
+    let longs: Vec<String> = chosen.get_arguments().flat_map(names).collect();
+    let long = |name: &str| longs.iter().any(|known| known == name);
     let short = |word: &str| word.len() == 1 && chosen.get_arguments().any(|a| a.get_short() == word.chars().next());
     let fixed = |word: OsString| match word.to_str().and_then(|text| text.strip_prefix('-')) {
-        Some(bare) if !short(bare) && longs.contains(&bare.split('=').next().unwrap_or(bare)) => {
+        Some(bare) if !short(bare) && long(bare.split('=').next().unwrap_or(bare)) => {
             OsString::from(format!("--{bare}"))
         }
         // Compilers take the file of these without a space.
-        Some(bare) if bare.starts_with("MF") && longs.contains(&"MF") => OsString::from(format!("--MF={}", &bare[2..])),
-        Some(bare) if bare.starts_with("MT") && longs.contains(&"MT") => OsString::from(format!("--MT={}", &bare[2..])),
+        Some(bare) if bare.starts_with("MF") && long("MF") => OsString::from(format!("--MF={}", &bare[2..])),
+        Some(bare) if bare.starts_with("MT") && long("MT") => OsString::from(format!("--MT={}", &bare[2..])),
         _ => word,
     };
     words.into_iter().map(fixed).collect()
