@@ -8,6 +8,7 @@
 use super::op::*;
 use crate::lang::closures::ClosureId;
 use crate::lang::types::Type;
+use crate::ops::working_space::WorkingSpace;
 use velour_grammar::Span;
 
 pub use super::kind::Kind;
@@ -234,6 +235,8 @@ pub struct Program {
     pub result: Option<Reg>,
     /// Named results.
     pub outputs: Vec<Output>,
+    /// What RGB means.
+    pub working_space: WorkingSpace,
 }
 
 impl Program {

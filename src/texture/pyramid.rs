@@ -1,5 +1,6 @@
 //! A texture as a pyramid of levels, of which the coarser ones are made when they are first asked for.
 
+use super::about::About;
 use super::texels::{Level, Texels};
 use super::wrap::Wrap;
 use std::sync::OnceLock;
@@ -11,6 +12,7 @@ pub struct Texture {
     size: [usize; 2],
     channels: usize,
     wrap: [Wrap; 2],
+    about: About,
 }
 
 impl Texture {
@@ -26,13 +28,24 @@ impl Texture {
         let mut levels: Vec<OnceLock<Level>> = given.into_iter().map(OnceLock::from).collect();
         levels.truncate(count as usize);
         levels.resize_with(count as usize, OnceLock::new);
-        Texture { levels, size, channels, wrap: [Wrap::default(); 2] }
+        Texture { levels, size, channels, wrap: [Wrap::default(); 2], about: About::default() }
     }
 
     /// Uses these ways where a look-up names none.
     pub fn with_wrap(mut self, wrap: [Wrap; 2]) -> Self {
         self.wrap = wrap;
         self
+    }
+
+    /// Keeps what its file says of it.
+    pub fn with_about(mut self, about: About) -> Self {
+        self.about = about;
+        self
+    }
+
+    /// What its file says of it.
+    pub fn about(&self) -> &About {
+        &self.about
     }
 
     /// Columns and rows of the finest level.

@@ -2,9 +2,9 @@
 
 use super::group::group;
 use super::host::PatchHost;
-use super::options::{Options, help, parse};
+use super::options::{Options, Step, help, parse};
 use super::save::{Grid, Numbers, save};
-use super::wording::line;
+use super::wording::{self, line};
 use super::{grid, group};
 use crate::cli::compile::CompileArgs;
 use crate::cli::failure::Failure;
@@ -13,7 +13,7 @@ use crate::cli::threads::capped;
 use crate::exec::{Group, Host, MAX_LANES, Machine, Points, Report, ReportKind, Values};
 use crate::ir::lower::Lazy;
 use crate::ops::format::{FormatArg, format};
-use crate::scene::{GroupCompiler, GroupSpec, ShaderFiles};
+use crate::scene::{GroupCompiler, GroupSpec, SceneError, SceneProblem, ShaderFiles};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -79,9 +79,22 @@ fn list_layers(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Resu
 }
 
 fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Result<Group, Failure> {
-    let wrong = |error: crate::scene::SceneError| Failure::Wrong(error.to_string());
+    let text = options.steps.iter().any(|step| matches!(step, Step::Group(_)));
+    let wrong = |error: SceneError| Failure::Wrong(wording::group_error(&error, spec, text));
+    let (mut missing, mut help) = (Vec::new(), None);
+    for layer in &spec.layers {
+        if let Err(error) = files.shader_of(spec, layer)
+            && matches!(*error.problem, SceneProblem::ShaderNotFound { .. })
+        {
+            missing.push(layer.shader.as_str());
+            help = help.or(error.help);
+        }
+    }
+    if let Some(help) = help {
+        return Err(Failure::Wrong(wording::missing(&missing, &help, spec)));
+    }
     let mut builder = files.builder(spec).map_err(wrong)?.group_name(&spec.name);
-    builder = builder.lazy(lazy(options));
+    builder = builder.lazy(lazy(options)).working_space(options.colorspace).watched(options.watch);
     if !options.outputs.is_empty() {
         builder = builder.keep_outputs();
     }
@@ -93,6 +106,9 @@ fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Re
     }
     let group = files.finish(builder, spec).map_err(wrong)?;
     files.take_warnings().iter().for_each(|warning| tell(&format!("{warning}\n")));
+    if is_set(options, "opt_warnings", false) {
+        group.error_calls().iter().for_each(|place| say(&wording::error_call(place, &spec.name)));
+    }
     if let Some(path) = &options.archive {
         let written = std::fs::write(path, spec.text());
         written.map_err(|error| Failure::Usage(format!("{}: error: {error}", path.display())))?;
@@ -100,17 +116,21 @@ fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Re
     Ok(group)
 }
 
+/// Is a setting of OSL's on?
+fn is_set(options: &Options, name: &str, otherwise: bool) -> bool {
+    let last = options.settings.iter().rev().find(|(known, _)| known == name);
+    last.map_or(otherwise, |(_, value)| value != "0")
+}
+
 /// Which layers wait, by OSL's settings.
 fn lazy(options: &Options) -> Lazy {
-    let on = |name: &str| {
-        let last = options.settings.iter().rev().find(|(known, _)| known == name);
-        last.is_none_or(|(_, value)| value != "0")
-    };
+    let on = |name: &str| is_set(options, name, true);
     Lazy {
         layers: on("lazylayers"),
         globals: on("lazyglobals"),
         unconnected: on("lazyunconnected"),
         traces: on("lazytrace"),
+        errors: on("lazyerror"),
     }
 }
 
@@ -132,7 +152,6 @@ struct Output {
     name: String,
     file: PathBuf,
     grid: Grid,
-    ints: bool,
 }
 
 struct Job<'o> {
@@ -159,7 +178,7 @@ impl<'o> Job<'o> {
         let threads = capped(options.threads);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| Failure::Usage(format!("error: threads cannot be started: {error}")))?;
-        let repeats = options.settings.iter().any(|(name, value)| name == "error_repeats" && value != "0");
+        let repeats = is_set(options, "error_repeats", false);
         let mut job = Job {
             options,
             ray_type: host.ray_type(&options.raytype),
@@ -183,8 +202,8 @@ impl<'o> Job<'o> {
             }
             let size = self.options.res;
             let values = vec![0.0; numbers * size[0] as usize * size[1] as usize];
-            let grid = Grid { size, channels: numbers, values };
-            self.outputs.push(Output { name: name.clone(), file: file.clone(), grid, ints });
+            let grid = Grid { size, channels: numbers, ints, values };
+            self.outputs.push(Output { name: name.clone(), file: file.clone(), grid });
         }
     }
 
@@ -240,7 +259,7 @@ impl<'o> Job<'o> {
                 let channels = output.grid.channels;
                 let name = output.name.rsplit('.').next().unwrap_or(&output.name);
                 let numbers =
-                    values[lane * channels..][..channels].iter().map(|x| format!(" {}", shown(*x, output.ints)));
+                    values[lane * channels..][..channels].iter().map(|x| format!(" {}", shown(*x, output.grid.ints)));
                 say(&format!("  {name} :{}\n", numbers.collect::<String>()));
             }
         }
@@ -277,6 +296,8 @@ impl<'o> Job<'o> {
             })?),
         };
         for output in self.outputs.iter().filter(|output| output.file.as_os_str() != "null" && !self.options.print) {
+            // Without a word on it numbers are kept as they are.
+            let numbers = numbers.or(output.grid.ints.then_some(Numbers::Ints));
             let saved = save(&output.grid, &output.file, numbers);
             saved.map_err(|error| {
                 Failure::Usage(format!("{}: error: cannot be written: {error}", output.file.display()))
