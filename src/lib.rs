@@ -52,6 +52,8 @@
 //! | room | feature | what it is |
 //! |---|---|---|
 //! | `grammar/` | | text to syntax tree: preprocessor, lexer, grammar, diagnostics (a crate of its own) |
+//! | [`limits`] | | budgets for input that nobody vouches for |
+//! | `files` | `render` | finished files: whole or not at all, through links, pipes and devices |
 //! | [`lang`] | | nouns: types, symbols, tables of builtins and globals, what a closure declares |
 //! | [`math`] | | columns, elementary functions, noise, frames, warps, quadrature; knows no language |
 //! | [`texture`] | | pictures that shaders look up: pyramids, filters; files with `render` |
@@ -125,8 +127,11 @@ pub mod cli;
 pub mod closure;
 pub mod compile;
 pub mod exec;
+#[cfg(feature = "render")]
+pub mod files;
 pub mod ir;
 pub mod lang;
+pub mod limits;
 pub mod math;
 // Its truths are f64, and no picture depends on it.
 #[cfg(feature = "measure")]

@@ -63,6 +63,35 @@ fn what_has_been_compiled_is_found_by_its_name_with_its_macros_and_folders() {
 }
 
 #[test]
+fn what_has_been_compiled_leads_out_of_no_sandbox() {
+    let text = "#include \"amount.h\"\nshader twice() { printf(\"%d\\n\", AMOUNT); }";
+    let header = "#define AMOUNT 2\n";
+    let place = Place::new(&[
+        ("secret.osl", text),
+        ("out/amount.h", header),
+        ("own.h", ""),
+        ("in/lib/own.osl", text),
+        ("in/include/amount.h", header),
+    ]);
+    let status = |line: &str| place.say(line).0;
+    assert_eq!(status("compile -q -Iin/include -o in/own.oso in/lib/own.osl"), 0);
+    assert_eq!(status("compile -q -Iin/include -o in/text.oso secret.osl"), 0);
+    assert_eq!(status("compile -q -Iout -o in/folder.oso in/lib/own.osl"), 0);
+    assert_eq!(status("compile -q -Iin/include --stdosl own.h -o in/header.oso in/lib/own.osl"), 0);
+    assert_eq!(status("compile -q -Iin/include -o out/recipe.oso in/lib/own.osl"), 0);
+    for name in ["in/own", "in/text", "in/folder", "out/recipe"] {
+        assert_eq!(place.say(&format!("shade {name}")), (0, "2\n\n".to_owned()), "{name} without a sandbox");
+    }
+    assert_eq!(place.say("shade --sandbox in in/own"), (0, "2\n\n".to_owned()));
+    for name in ["in/text", "in/folder", "in/header", "out/recipe"] {
+        let (status, out) = place.say(&format!("shade --sandbox in {name}"));
+        assert!(status == 1 && !out.contains("AMOUNT 2"), "{name}: {out}");
+    }
+    assert_eq!(status("compile --sandbox in -o in/b.oso secret.osl"), 2);
+    assert!(!place.path("in/b.oso").exists());
+}
+
+#[test]
 fn code_of_osl_itself_is_passed_over() {
     let text = "shader a() { printf(\"text\\n\"); }";
     let place = Place::new(&[("a.osl", text), ("a.oso", "OpenShadingLanguage 1.00\nshader a\n")]);

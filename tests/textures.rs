@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use velour::compile::compile;
 use velour::exec::{Host, Machine, Points, Values};
-use velour::texture::{Interpolation, Level, Lookup, Texels, Texture, Wrap};
+use velour::texture::{Interpolation, Level, Lookup, Texels, Texture, Wrap, values};
 
 /// A texture whose texel at the middle of (s, t) is `f(s, t)`.
 fn painted(width: usize, height: usize, channels: usize, f: impl Fn(f32, f32, usize) -> f32) -> Texture {
@@ -50,6 +50,43 @@ fn a_ramp_is_its_coordinate_and_its_slopes_are_one() {
             );
             assert!((sample.ds[0] - 1.0).abs() < 1e-4 && sample.ds[1].abs() < 1e-4, "{:?}", sample.ds);
             assert!((sample.dt[1] - 1.0).abs() < 1e-4 && sample.dt[0].abs() < 1e-4, "{:?}", sample.dt);
+        }
+    }
+}
+
+#[test]
+fn columns_are_looked_up_as_single_places_are() {
+    // Neither multiples of a block of texels, nor of the places that are worked out together.
+    const N: usize = 61;
+    let number = |i: usize, k: usize| ((i * 7919 + k * 104_729) % 1009) as f32 / 1009.0;
+    for (case, wrap) in [Wrap::Black, Wrap::Clamp, Wrap::Periodic, Wrap::Mirror].into_iter().enumerate() {
+        let texture = painted(45, 19, 3, |s, t, c| (s * 7.0 + t * 3.0 + c as f32).sin());
+        for interpolation in [Interpolation::Closest, Interpolation::Linear, Interpolation::Cubic, Interpolation::Smart]
+        {
+            // Points, one ellipse for all, and one for each of them, short and long.
+            for (length, count) in [(0.0, 1), (0.3, 1), (0.05, N), (0.6, N)] {
+                let how = Lookup { interpolation, wrap: [Some(wrap); 2], fill: 0.5, ..Lookup::default() };
+                let place = |i: usize, k: usize| if i == 17 { f32::NAN } else { 3.0 * number(i, k + case) - 1.0 };
+                let slope = |i: usize, k: usize| length * number(i, k) * number(i + 1, k);
+                let columns: [Vec<f32>; 6] = std::array::from_fn(|k| match k {
+                    0 | 1 => (0..N).map(|i| place(i, k)).collect(),
+                    _ => (0..count).map(|i| slope(i, k)).collect(),
+                });
+                let lit: Vec<i32> = (0..N).map(|i| i32::from(i % 5 != 3)).collect();
+                let mut out = vec![vec![7.0; N]; 4];
+                values(&texture, &columns.each_ref().map(|column| &column[..]), &how, &lit, &mut out);
+                for i in 0..N {
+                    let at = |k: usize| columns[k][i.min(columns[k].len() - 1)];
+                    let one = texture.value(at(0), at(1), [at(2), at(3), at(4), at(5)], &how);
+                    let wanted = if lit[i] == 0 { [7.0; 4] } else { one };
+                    let got = [out[0][i], out[1][i], out[2][i], out[3][i]];
+                    assert_eq!(
+                        got.map(f32::to_bits),
+                        wanted.map(f32::to_bits),
+                        "{wrap:?} {interpolation:?} {length} {i}"
+                    );
+                }
+            }
         }
     }
 }

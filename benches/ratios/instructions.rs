@@ -7,11 +7,13 @@ use velour::lanes;
 use velour::math::elementary as e;
 use velour::ops::arithmetic::{div, min, sqrt};
 
-const TEN: &str = "shader ten(float k = 0.3, output float result = 0) {
+/// Ten instructions in a row.
+pub const TEN: &str = "shader ten(float k = 0.3, output float result = 0) {
     float a = u + k; float b = a * u; float c = b - k; float d = a / c; float e = min(d, c);
     float f = sqrt(e); float g = f * a + b; float h = floor(g); float i = exp(-f); result = i * h + g; }";
 
-const ROUNDS: &str = "shader rounds(output float result = 0) {
+/// Ten rounds of eleven instructions.
+pub const ROUNDS: &str = "shader rounds(output float result = 0) {
     float x = u, y = v;
     for (int j = 0; j < 10; ++j) {
         float a = x + y; float b = a * x; float c = b - y; float d = a / c; float e = min(d, c);

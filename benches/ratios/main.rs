@@ -5,10 +5,12 @@
 //! ratio is the median of the ratios of each turn.
 
 mod closures;
+mod grids;
 mod hand;
 mod instructions;
 mod layers;
 mod noises;
+mod textures;
 mod tops;
 mod weave;
 
@@ -109,8 +111,10 @@ fn main() {
     let table = Table { words: std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect() };
     instructions::rows(&table);
     noises::rows(&table);
+    textures::rows(&table);
     weave::rows(&table);
     closures::rows(&table);
     tops::rows(&table);
     layers::rows(&table);
+    grids::rows(&table);
 }

@@ -14,7 +14,8 @@ use velour::math::elementary as e;
 use velour::math::frame::Frame;
 use velour::math::noise::{Endless, perlin::perlin3};
 
-const SHADER: &str = include_str!("../../shaders/weave.osl");
+/// The shader's text.
+pub const SHADER: &str = include_str!("../../shaders/weave.osl");
 const WARP: Vec3 = Vec3::new(0.55, 0.12, 0.1);
 const WEFT: Vec3 = Vec3::new(0.1, 0.12, 0.45);
 const TINT: f32 = 0.8;

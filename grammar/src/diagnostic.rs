@@ -1,5 +1,6 @@
 //! Messages for the person who wrote the shader: one type, collected, never thrown.
 
+use crate::limits::MESSAGES;
 use crate::span::Span;
 
 /// How bad it is.
@@ -80,14 +81,27 @@ impl Diagnostic {
 /// The messages of one run, in the order they were found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnostics {
-    /// The messages.
+    /// The messages, [`crate::limits::MESSAGES`] of them at most.
     pub list: Vec<Diagnostic>,
+    /// How many there were beyond that.
+    pub left_out: usize,
 }
 
 impl Diagnostics {
     /// Adds a message.
     pub fn push(&mut self, diagnostic: Diagnostic) {
-        self.list.push(diagnostic);
+        if self.list.len() < MESSAGES {
+            self.list.push(diagnostic);
+            return;
+        }
+        self.left_out += 1;
+        // One error at least is among those that are kept.
+        if diagnostic.severity == Severity::Error
+            && !self.has_errors()
+            && let Some(last) = self.list.last_mut()
+        {
+            *last = diagnostic;
+        }
     }
 
     /// True when at least one message is an error.
@@ -111,7 +125,8 @@ impl Diagnostics {
     }
 
     /// Takes over all messages of another list.
-    pub fn append(&mut self, mut other: Diagnostics) {
-        self.list.append(&mut other.list);
+    pub fn append(&mut self, other: Diagnostics) {
+        other.list.into_iter().for_each(|diagnostic| self.push(diagnostic));
+        self.left_out += other.left_out;
     }
 }

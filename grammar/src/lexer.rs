@@ -5,7 +5,8 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::literal::{self, Number};
-use crate::preprocessor::scan::{Kind, PpToken};
+use crate::preprocessor::Terminal;
+use crate::preprocessor::scan::Kind;
 use crate::source::Sources;
 use crate::span::Span;
 use crate::token::{Sym, Token, shader_kind};
@@ -14,11 +15,7 @@ use crate::token::{Sym, Token, shader_kind};
 pub(crate) type Spanned<'s> = (u32, Token<'s>, u32);
 
 /// Lexes everything.
-pub(crate) fn lex<'s>(
-    tokens: &[(PpToken, u32)],
-    sources: &'s Sources,
-    diagnostics: &mut Diagnostics,
-) -> Vec<Spanned<'s>> {
+pub(crate) fn lex<'s>(tokens: &[Terminal], sources: &'s Sources, diagnostics: &mut Diagnostics) -> Vec<Spanned<'s>> {
     let mut lexer = Lexer { sources, tokens, at: 0, out: Vec::with_capacity(tokens.len()), diagnostics };
     while lexer.at < tokens.len() {
         lexer.step();
@@ -28,7 +25,7 @@ pub(crate) fn lex<'s>(
 
 struct Lexer<'s, 't> {
     sources: &'s Sources,
-    tokens: &'t [(PpToken, u32)],
+    tokens: &'t [Terminal],
     at: usize,
     out: Vec<Spanned<'s>>,
     diagnostics: &'t mut Diagnostics,
@@ -36,7 +33,8 @@ struct Lexer<'s, 't> {
 
 impl<'s> Lexer<'s, '_> {
     fn step(&mut self) {
-        let (token, index) = self.tokens[self.at];
+        let token = self.tokens[self.at];
+        let index = token.index;
         if token.kind == Kind::Text {
             return self.strings();
         }
@@ -57,20 +55,20 @@ impl<'s> Lexer<'s, '_> {
         }
     }
 
-    fn text(&self, token: PpToken) -> &'s str {
-        self.sources.spelling(token.place)
+    fn text(&self, token: Terminal) -> &'s str {
+        self.sources.token(token.index).map_or("", |token| self.sources.spelling(token.place))
     }
 
     /// Neighbouring strings are one.
     fn strings(&mut self) {
-        let first = self.tokens[self.at].1;
+        let first = self.tokens[self.at].index;
         let mut last = first;
         let mut value = String::new();
-        while let Some((token, index)) = self.tokens.get(self.at).copied().filter(|(t, _)| t.kind == Kind::Text) {
+        while let Some(token) = self.tokens.get(self.at).copied().filter(|token| token.kind == Kind::Text) {
             let text = self.text(token);
             let inner = text.get(1..text.len() - 1).unwrap_or("");
-            value.push_str(&self.unescaped(inner, index));
-            last = index;
+            value.push_str(&self.unescaped(inner, token.index));
+            last = token.index;
             self.at += 1;
         }
         self.out.push((first, Token::Str(value), last));
@@ -88,7 +86,7 @@ impl<'s> Lexer<'s, '_> {
         })
     }
 
-    fn unclosed(&mut self, token: PpToken, span: Span) -> Token<'s> {
+    fn unclosed(&mut self, token: Terminal, span: Span) -> Token<'s> {
         self.diagnostics.push(
             Diagnostic::error("E0202", span, "this string is never closed")
                 .label("the string starts here")
@@ -97,7 +95,7 @@ impl<'s> Lexer<'s, '_> {
         Token::Str(self.text(token).trim_start_matches('"').to_string())
     }
 
-    fn stray(&mut self, token: PpToken, span: Span) -> Token<'s> {
+    fn stray(&mut self, token: Terminal, span: Span) -> Token<'s> {
         let text = self.text(token);
         let help = match text {
             _ if text.starts_with('\'') => "strings are written with double quotes",
@@ -114,7 +112,7 @@ impl<'s> Lexer<'s, '_> {
         Token::Error
     }
 
-    fn number(&mut self, token: PpToken, span: Span) -> Token<'s> {
+    fn number(&mut self, token: Terminal, span: Span) -> Token<'s> {
         let text = self.text(token);
         match literal::number(text) {
             Number::Int(value) => Token::Int(value),
@@ -163,13 +161,13 @@ impl<'s> Lexer<'s, '_> {
     }
 
     /// A keyword, a reserved word, the kind of a shader, or else a name. Nothing for a word best ignored.
-    fn word(&mut self, token: PpToken, span: Span) -> Option<Token<'s>> {
+    fn word(&mut self, token: Terminal, span: Span) -> Option<Token<'s>> {
         let text = self.text(token);
         if let Some(keyword) = Sym::keyword(text) {
             return Some(Token::Sym(keyword));
         }
         if let Some(kind) = shader_kind(text) {
-            let named = self.tokens.get(self.at).is_some_and(|(t, _)| t.kind == Kind::Name);
+            let named = self.tokens.get(self.at).is_some_and(|next| next.kind == Kind::Name);
             let free = !matches!(self.out.last(), Some((_, Token::Sym(Sym::Struct), _)));
             return Some(if named && free { Token::Kind(kind) } else { Token::Ident(text) });
         }

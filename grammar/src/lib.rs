@@ -21,8 +21,11 @@ mod decode;
 mod depth;
 pub mod diagnostic;
 mod explain;
+pub mod files;
 mod lexer;
+pub mod limits;
 mod literal;
+pub mod names;
 mod preprocessor;
 pub mod print;
 mod render;
@@ -60,6 +63,8 @@ pub struct Options {
     pub own_files: Vec<(String, String)>,
     /// Name and text of a file that is read before the user's: the standard header.
     pub prelude: Option<(String, String)>,
+    /// Which files `#include` may read.
+    pub access: files::Access,
 }
 
 /// What parsing gives.
@@ -85,6 +90,7 @@ pub fn parse(name: &str, text: &str, options: &Options) -> Parsed {
         return Parsed { file: ast::File::default(), sources, diagnostics };
     }
     let mut tokens = lexer::lex(&done.tokens, &sources, &mut diagnostics);
+    drop(done.tokens);
     if let Some(message) = brackets::too_deep(&tokens) {
         diagnostics.push(message);
         return Parsed { file: ast::File::default(), sources, diagnostics };

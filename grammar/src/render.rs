@@ -1,12 +1,14 @@
 //! Messages as text: one line each, or with excerpts of the source.
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
+use crate::limits::SHOWN;
 use crate::source::{NO_CALL, Place, SCRATCH, Sources};
 use crate::span::Span;
 use codespan_reporting::diagnostic as shown;
 use codespan_reporting::files::{Error, Files};
 use codespan_reporting::term::{self, Config, termcolor};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// How messages are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +25,9 @@ pub enum Format {
 /// More notes than this about macros and includes say no more.
 const MAX_NOTES: usize = 6;
 
+/// How the names of shaders and headers end.
+const HEADERS: [&str; 8] = ["osl", "h", "oslh", "hpp", "hh", "inc", "glsl", "mx"];
+
 /// Lines of more bytes than this are shown in part.
 const LONG_LINE: usize = 240;
 
@@ -30,14 +35,72 @@ impl Sources {
     /// Writes messages as text, in order. Colours are ANSI escapes.
     pub fn render(&self, diagnostics: &Diagnostics, format: Format, color: bool) -> String {
         let mut out = String::new();
-        for diagnostic in &diagnostics.list {
+        for diagnostic in &self.told(diagnostics) {
             match format {
                 Format::Short => self.render_short(diagnostic, &mut out),
                 Format::Full => self.render_full(diagnostic, color, &mut out),
                 Format::Json => self.render_json(diagnostic, &mut out),
             }
         }
+        let more = diagnostics.list.len().saturating_sub(SHOWN) + diagnostics.left_out;
+        match (more, format) {
+            (0, _) => {}
+            (more, Format::Short | Format::Full) => out.push_str(&format!("and {more} more messages\n")),
+            (more, Format::Json) => out.push_str(&format!(
+                "{{\"severity\":\"note\",\"code\":\"\",\"message\":\"and {more} more messages\",\"file\":null,\"line\":null,\"column\":null,\"label\":\"\",\"help\":null,\"also\":[]}}\n"
+            )),
+        }
         out
+    }
+
+    /// The first messages, errors before warnings where not all are shown, without the text of files that are no shaders.
+    fn told(&self, diagnostics: &Diagnostics) -> Vec<Diagnostic> {
+        let mut list: Vec<&Diagnostic> = diagnostics.list.iter().collect();
+        if list.len() > SHOWN {
+            list.sort_by_key(|diagnostic| diagnostic.severity != Severity::Error);
+            list.truncate(SHOWN);
+        }
+        let mut hidden: Vec<Arc<str>> = Vec::new();
+        let mut told = Vec::new();
+        for diagnostic in list {
+            match self.foreign(diagnostic.span) {
+                None => told.push(self.without_foreign(diagnostic)),
+                // One message for each file: what is wrong in it would tell of its text.
+                Some(file) if !hidden.contains(&file) => {
+                    let line = self.locate(diagnostic.span).map_or(0, |at| at.line);
+                    let message = format!("{file}:{line}: what is included here is no shader text");
+                    let error = Diagnostic::error(diagnostic.code, Span::NONE, message);
+                    told.push(
+                        Diagnostic { severity: diagnostic.severity, ..error }
+                            .help("its text is not shown: a header's name ends in .h or .osl"),
+                    );
+                    hidden.push(file);
+                }
+                Some(_) => {}
+            }
+        }
+        told
+    }
+
+    /// The message without remarks at places of files that are no shaders.
+    fn without_foreign(&self, diagnostic: &Diagnostic) -> Diagnostic {
+        let mut told = diagnostic.clone();
+        told.secondary.retain(|(span, _)| self.foreign(*span).is_none());
+        told
+    }
+
+    /// The file of a place, when it was included and its name is not that of a header or shader.
+    fn foreign(&self, span: Span) -> Option<Arc<str>> {
+        let file = self.place(span)?.file;
+        self.is_foreign(file).then(|| self.table.files[file as usize].name.clone())
+    }
+
+    /// Was a file included whose name is not that of a header or shader?
+    fn is_foreign(&self, file: u32) -> bool {
+        let file = &self.table.files[file as usize];
+        let extension = std::path::Path::new(&*file.name).extension().and_then(|e| e.to_str());
+        let known = extension.is_some_and(|e| HEADERS.contains(&e.to_lowercase().as_str()));
+        file.included_from.is_some() && !known
     }
 
     fn render_short(&self, diagnostic: &Diagnostic, out: &mut String) {
@@ -141,7 +204,7 @@ impl Sources {
             let Some(made_by) = self.table.calls.get(call as usize) else {
                 break;
             };
-            if at.file != SCRATCH {
+            if at.file != SCRATCH && !self.is_foreign(at.file) {
                 let range = at.start as usize..at.end as usize;
                 let note = format!("in expansion of macro {}", made_by.name);
                 labels.push(shown::Label::secondary(at.file as usize, range).with_message(note));

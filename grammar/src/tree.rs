@@ -6,11 +6,14 @@
 use crate::ast::*;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::explain::{Failure, Recovery};
+use crate::names::{Name, NameMap};
 use crate::span::Span;
 
 /// What the actions gather besides the tree they return.
 #[derive(Default)]
-pub(crate) struct Context {
+pub(crate) struct Context<'s> {
+    /// The names so far.
+    names: NameMap<&'s str, Name>,
     /// The items so far. They live here and not in the parser's result so that they survive a fatal error.
     pub items: Vec<Item>,
     /// The parse errors that were recovered from, in the order they were met.
@@ -19,7 +22,12 @@ pub(crate) struct Context {
     pub diagnostics: Diagnostics,
 }
 
-impl Context {
+impl<'s> Context<'s> {
+    /// A name, which all its places share.
+    pub(crate) fn name(&mut self, text: &'s str) -> Name {
+        self.names.entry(text).or_insert_with(|| Name::from(text)).clone()
+    }
+
     /// Notes a parse error whose text has been skipped.
     pub(crate) fn recovered(&mut self, recovery: Recovery<'_>) {
         self.failures.push(Failure::from(recovery));
@@ -36,16 +44,6 @@ impl Context {
         }
         TypeSpec { closure: true, base: TypeName::Color, span }
     }
-}
-
-/// A name with its brackets and initialiser.
-pub(crate) struct Declarator {
-    /// The name.
-    pub name: Ident,
-    /// Its array brackets.
-    pub array: ArrayLen,
-    /// Its initialiser.
-    pub init: Option<Expr>,
 }
 
 /// The span from one token to another.
@@ -85,7 +83,7 @@ pub(crate) fn function(mut head: Box<FunctionDecl>, body: Option<Vec<Stmt>>) -> 
 }
 
 /// A formal parameter.
-pub(crate) fn param(output: bool, ty: TypeSpec, d: Declarator, metadata: Vec<Metadata>) -> Box<Param> {
+pub(crate) fn param(output: bool, ty: TypeSpec, d: VarDecl, metadata: Vec<Metadata>) -> Box<Param> {
     Box::new(Param { output, ty, name: d.name, array: d.array, default: d.init, metadata })
 }
 
@@ -96,28 +94,69 @@ pub(crate) fn joined(before: Option<Vec<Metadata>>, after: Option<Vec<Metadata>>
     all
 }
 
+/// A name with its brackets and initialiser, of a type that is known later.
+pub(crate) fn declarator(name: Ident, array: ArrayLen, init: Option<Box<Expr>>) -> Box<VarDecl> {
+    let ty = TypeSpec { closure: false, base: TypeName::Void, span: Span::NONE };
+    Box::new(VarDecl { ty, name, array, init })
+}
+
 /// A declaration statement.
-pub(crate) fn declare(ty: TypeSpec, names: Vec<Box<Declarator>>) -> StmtKind {
-    let declared = |d: Box<Declarator>| {
-        let d = *d;
-        VarDecl { ty: ty.clone(), name: d.name, array: d.array, init: d.init }
-    };
-    StmtKind::Declare(names.into_iter().map(declared).collect())
+pub(crate) fn declare(ty: TypeSpec, mut names: Vec<VarDecl>) -> StmtKind {
+    if let Some((last, others)) = names.split_last_mut() {
+        others.iter_mut().for_each(|name| name.ty = ty.clone());
+        last.ty = ty;
+    }
+    StmtKind::Declare(names)
 }
 
 /// An `if`.
 pub(crate) fn branch(condition: Box<Expr>, then: Box<Stmt>, otherwise: Option<Box<Stmt>>) -> StmtKind {
-    StmtKind::If { condition: *condition, then, otherwise }
+    StmtKind::If { condition, then, otherwise }
 }
 
 /// A `for`.
 pub(crate) fn for_loop(head: Box<ForHead>, body: Box<Stmt>) -> StmtKind {
     let ForHead { init, condition, step } = *head;
-    StmtKind::For { init, condition: condition.map(|e| *e), step: step.map(|e| *e), body }
+    StmtKind::For { init, condition, step, body }
+}
+
+/// Operands and the binary operators between them, of which those are joined that nothing to come can part.
+pub(crate) struct Chain {
+    /// What waits for the operand after it, each binding tighter than the one before.
+    waiting: Vec<(Box<Expr>, BinaryOp)>,
+    /// The last operand.
+    last: Box<Expr>,
+}
+
+impl Chain {
+    /// A single operand.
+    pub(crate) fn of(operand: Box<Expr>) -> Self {
+        Chain { waiting: Vec::new(), last: operand }
+    }
+
+    /// One more operand: operators are joined from the left, the tighter ones first.
+    pub(crate) fn then(mut self, op: BinaryOp, operand: Box<Expr>) -> Self {
+        let before = joined_to(&mut self.waiting, self.last, op.tightness());
+        self.waiting.push((before, op));
+        Chain { waiting: self.waiting, last: operand }
+    }
+
+    /// The whole.
+    pub(crate) fn expr(mut self) -> Box<Expr> {
+        joined_to(&mut self.waiting, self.last, 0)
+    }
+}
+
+/// An operand with what waits for it and binds at least so tightly.
+fn joined_to(waiting: &mut Vec<(Box<Expr>, BinaryOp)>, mut last: Box<Expr>, least: u8) -> Box<Expr> {
+    while let Some((a, op)) = waiting.pop_if(|(_, op)| op.tightness() >= least) {
+        last = binary(op, a, last);
+    }
+    last
 }
 
 /// `a op b`
-pub(crate) fn binary(op: BinaryOp, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
+fn binary(op: BinaryOp, a: Box<Expr>, b: Box<Expr>) -> Box<Expr> {
     let span = a.span.to(b.span);
     Box::new(Expr { kind: ExprKind::Binary(op, a, b), span })
 }
@@ -137,7 +176,7 @@ pub(crate) fn unary(op: UnaryOp, operand: Box<Expr>, first: u32) -> Box<Expr> {
 /// `(type) a`
 pub(crate) fn cast(ty: TypeSpec, operand: Box<Expr>, first: u32) -> Box<Expr> {
     let last = operand.span.last;
-    expr(ExprKind::Cast(ty, operand), first, last)
+    expr(ExprKind::Cast(Box::new(ty), operand), first, last)
 }
 
 /// `++a` and `--a`

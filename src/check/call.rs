@@ -9,6 +9,7 @@ use crate::lang::builtins::{self, Formal};
 use crate::lang::closures::{ClosureId, ClosureSpec, ParamSpec};
 use crate::lang::types::{Length, Type};
 use velour_grammar::ast::{self, Ident};
+use velour_grammar::names::Name;
 use velour_grammar::{Diagnostic, Span};
 
 impl Checker<'_> {
@@ -43,7 +44,7 @@ impl Checker<'_> {
             return Expr::error(span);
         }
         let candidates = self.candidates(&name.name);
-        if candidates.is_empty() && self.foreign.contains(&name.name) {
+        if candidates.is_empty() && self.foreign.contains(name.name.as_str()) {
             let message = format!("velour has no closure `{}`; it adds nothing", name.name);
             self.report(
                 Diagnostic::warning("W0506", name.span, message).help("`velour info` lists the closures there are"),
@@ -78,7 +79,7 @@ impl Checker<'_> {
             return;
         }
         let diagnostic = Diagnostic::error("E0405", name.span, format!("there is no function `{}`", name.name));
-        let mut known: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().map(String::as_str)).collect();
+        let mut known: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().map(Name::as_str)).collect();
         builtins::names().for_each(|name| known.push(name));
         self.closures.specs.iter().for_each(|spec| known.push(spec.name));
         let help = nearest(&name.name, known.into_iter()).map(|near| format!("did you mean `{near}`?"));
@@ -155,7 +156,7 @@ impl Checker<'_> {
         let signature = &self.signatures[id.0 as usize];
         let (returns, formals) = (signature.returns.clone(), signature.formals.clone());
         self.note_call(id, span);
-        let mut arguments = Vec::new();
+        let mut arguments = Vec::with_capacity(values.len());
         for (((ty, output), value), arg) in formals.iter().zip(values).zip(args) {
             // What has no name cannot be written: the function writes a copy that nobody reads.
             if *output && is_place(arg) {
@@ -183,7 +184,7 @@ impl Checker<'_> {
         {
             self.warn_of_noise(name, kind, values[0].span);
         }
-        let mut arguments = Vec::new();
+        let mut arguments = Vec::with_capacity(values.len());
         let mut option = String::new();
         for (at, (value, arg)) in values.into_iter().zip(args).enumerate() {
             if signature.options && at >= signature.formals.len() {
@@ -299,7 +300,7 @@ impl Checker<'_> {
             keywords.retain(|(known, _): &(u32, Expr)| *known != at as u32);
             keywords.push((at as u32, value));
         }
-        Expr::new(ExprKind::Closure(id, params, keywords), Type::CLOSURE, span)
+        Expr::new(ExprKind::Closure(id, params.into(), keywords.into()), Type::CLOSURE, span)
     }
 
     /// Warns of a keyword that a closure does not have. The tags of `debug` are the host's own.

@@ -4,8 +4,10 @@ use super::typed::{Function, FunctionId, Shader, Stmt, VarId, Variable};
 use crate::lang::closures::ClosureTable;
 use crate::lang::globals::GLOBALS;
 use crate::lang::types::{Struct, Type};
-use std::collections::{HashMap, HashSet};
+use crate::limits::EXPANDED;
+use std::collections::HashSet;
 use std::sync::Arc;
+use velour_grammar::names::{Name, NameMap};
 use velour_grammar::{Diagnostic, Diagnostics, Span};
 
 /// What a name means in a scope.
@@ -32,7 +34,7 @@ pub(super) struct Signature {
 pub(super) struct Checker<'a> {
     pub closures: &'a ClosureTable,
     pub diagnostics: Diagnostics,
-    pub scopes: Vec<HashMap<String, Symbol>>,
+    pub scopes: Vec<NameMap<Name, Symbol>>,
     pub variables: Vec<Variable>,
     /// Whether each variable may be assigned.
     pub writable: Vec<bool>,
@@ -58,7 +60,7 @@ impl<'a> Checker<'a> {
         let mut checker = Checker {
             closures,
             diagnostics: Diagnostics::default(),
-            scopes: vec![HashMap::new()],
+            scopes: vec![NameMap::default()],
             variables: Vec::new(),
             writable: Vec::new(),
             foreign: HashSet::new(),
@@ -74,9 +76,9 @@ impl<'a> Checker<'a> {
         for &(name, global, base, writable) in GLOBALS {
             let id = VarId(checker.variables.len() as u32);
             let (ty, global) = (Type::of(base), Some(global));
-            checker.variables.push(Variable { name: name.to_owned(), ty, span: Span::NONE, global });
+            checker.variables.push(Variable { name: name.into(), ty, span: Span::NONE, global });
             checker.writable.push(writable);
-            checker.scopes[0].insert(name.to_owned(), Symbol::Var(id));
+            checker.scopes[0].insert(name.into(), Symbol::Var(id));
         }
         checker
     }
@@ -107,18 +109,18 @@ impl<'a> Checker<'a> {
 
     /// Runs `body` in a scope of its own.
     pub fn scoped<T>(&mut self, body: impl FnOnce(&mut Self) -> T) -> T {
-        self.scopes.push(HashMap::new());
+        self.scopes.push(NameMap::default());
         let result = body(self);
         self.scopes.pop();
         result
     }
 
     /// Makes a variable and binds its name in the innermost scope.
-    pub fn bind(&mut self, name: &str, ty: Type, span: Span, writable: bool) -> VarId {
+    pub fn bind(&mut self, name: &Name, ty: Type, span: Span, writable: bool) -> VarId {
         let id = VarId(self.variables.len() as u32);
-        self.variables.push(Variable { name: name.to_owned(), ty, span, global: None });
+        self.variables.push(Variable { name: name.clone(), ty, span, global: None });
         self.writable.push(writable);
-        let earlier = self.scopes.last_mut().and_then(|scope| scope.insert(name.to_owned(), Symbol::Var(id)));
+        let earlier = self.scopes.last_mut().and_then(|scope| scope.insert(name.clone(), Symbol::Var(id)));
         if let Some(Symbol::Var(earlier)) = earlier {
             let before = self.variables[earlier.0 as usize].span;
             let diagnostic = Diagnostic::error("E0404", span, format!("`{name}` is declared twice in this scope"));
@@ -171,7 +173,6 @@ impl<'a> Checker<'a> {
 
     /// Functions are expanded in place, so a few lines of calls within calls can grow without bound.
     fn limit_expansion(&mut self, span: Span) {
-        const LIMIT: u64 = 4_000_000;
         let mut sizes: Vec<Option<u64>> = vec![None; self.signatures.len()];
         let mut open: Vec<usize> = (0..self.signatures.len()).collect();
         while let Some(&at) = open.last() {
@@ -187,7 +188,7 @@ impl<'a> Checker<'a> {
             }
         }
         let whole = self.shader_calls.iter().filter_map(|call| sizes[call.0.0 as usize]);
-        if whole.fold(0, u64::saturating_add) > LIMIT {
+        if whole.fold(0, u64::saturating_add) > EXPANDED {
             let message =
                 "the shader is too large: functions are expanded in place, and here they call each other too often";
             self.report(

@@ -4,16 +4,25 @@ use super::context::{Checker, Signature, Symbol};
 use super::typed::{self, FunctionId, VarId};
 use crate::lang::builtins;
 use crate::lang::types::{Base, Element, Length, Struct, Type};
+use crate::limits::{ELEMENTS, NUMBERS};
 use std::sync::Arc;
 use velour_grammar::ast::{ArrayLen, FunctionDecl, Metadata, Param, ShaderDecl, StructDecl, TypeName, TypeSpec};
 use velour_grammar::{Diagnostic, Span};
 
-/// The most elements of one array. Every point of a batch has its own copy of an array.
-const MAX_ELEMENTS: i32 = 16_384;
-
 impl Checker<'_> {
     /// The type written, with its array brackets.
     pub fn resolve_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
+        let ty = self.written_type(spec, array);
+        if ty.numbers(NUMBERS) <= NUMBERS {
+            return ty;
+        }
+        let message = format!("{} has more numbers than the {NUMBERS} that a shader may have", ty.named());
+        let diagnostic = Diagnostic::error("E0507", spec.span, message);
+        self.report(diagnostic.help("every point of a batch has its own copy: make its arrays shorter"));
+        Type::VOID
+    }
+
+    fn written_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
         let base = match &spec.base {
             _ if spec.closure => Base::Closure,
             TypeName::Int => Base::Int,
@@ -44,10 +53,10 @@ impl Checker<'_> {
         match array {
             ArrayLen::Single => Length::Single,
             ArrayLen::Unsized => Length::Unsized,
-            ArrayLen::Sized(n) if n > MAX_ELEMENTS => {
+            ArrayLen::Sized(n) if n > ELEMENTS => {
                 let diagnostic =
                     Diagnostic::error("E0507", span, format!("an array of {n} elements is too large for a shader"));
-                self.report(diagnostic.help(format!("{MAX_ELEMENTS} elements are the most")));
+                self.report(diagnostic.help(format!("{ELEMENTS} elements are the most")));
                 Length::Fixed(1)
             }
             ArrayLen::Sized(n) if n > 0 => Length::Fixed(n as u32),
@@ -84,9 +93,9 @@ impl Checker<'_> {
                     "write the length in the brackets",
                 );
             }
-            fields.push((field.name.name.clone(), ty));
+            fields.push((field.name.name.to_string(), ty));
         }
-        let structure = Arc::new(Struct { name: decl.name.name.clone(), fields });
+        let structure = Arc::new(Struct { name: decl.name.name.to_string(), fields });
         let scope = self.scopes.len() - 1;
         if let Some(Symbol::Struct(_)) = self.scopes[scope].insert(decl.name.name.clone(), Symbol::Struct(structure)) {
             self.error(
@@ -128,7 +137,7 @@ impl Checker<'_> {
                 .also(decl.name.span, "declared here");
             self.report(diagnostic.help("write `return value;`, or declare it `void`"));
         }
-        let function = typed::Function { name: decl.name.name.clone(), returns, params, body };
+        let function = typed::Function { name: decl.name.name.to_string(), returns, params, body };
         self.bodies[id.0 as usize] = Some(Arc::new(function));
     }
 
@@ -142,7 +151,7 @@ impl Checker<'_> {
         let builtin = decl.metadata.iter().any(|entry| entry.name.name == "builtin");
         let closure = decl.return_type.closure;
         if builtin && closure {
-            self.foreign.insert(name.clone());
+            self.foreign.insert(name.to_string());
         }
         builtin && closure
     }
@@ -199,7 +208,7 @@ impl Checker<'_> {
         }
         let id = FunctionId(self.signatures.len() as u32);
         self.signatures.push(Signature {
-            name: name.clone(),
+            name: name.to_string(),
             returns: returns.clone(),
             formals: formals.to_vec(),
             span: decl.span,
@@ -219,7 +228,7 @@ impl Checker<'_> {
             let body = c.check_block(&decl.body);
             typed::Shader {
                 kind: decl.kind,
-                name: decl.name.name.clone(),
+                name: decl.name.name.to_string(),
                 span: decl.span,
                 metadata,
                 params,
@@ -261,7 +270,7 @@ impl Checker<'_> {
         for entry in list {
             let mut ty = self.resolve_type(&entry.ty, entry.array);
             let value = self.check_initial(&entry.value, &mut ty);
-            out.push(typed::Metadata { ty, name: entry.name.name.clone(), value });
+            out.push(typed::Metadata { ty, name: entry.name.name.to_string(), value });
         }
         out
     }

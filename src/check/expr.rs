@@ -5,6 +5,7 @@ use super::convert::{assignable, equivalent, is_number};
 use super::typed::{Expr, ExprKind};
 use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{self, ArrayLen, Ident, TypeSpec};
+use velour_grammar::names::Name;
 use velour_grammar::{Diagnostic, Span};
 
 impl Checker<'_> {
@@ -71,7 +72,7 @@ impl Checker<'_> {
             }
             None => {
                 let diagnostic = Diagnostic::error("E0403", span, format!("`{name}` is not declared"));
-                let names = self.scopes.iter().flat_map(|scope| scope.keys().map(String::as_str));
+                let names = self.scopes.iter().flat_map(|scope| scope.keys().map(Name::as_str));
                 let help = nearest(name, names).map(|near| format!("did you mean `{near}`?"));
                 let help = help.unwrap_or_else(|| format!("declare it, for example `float {name} = 0;`"));
                 self.report(diagnostic.help(help));

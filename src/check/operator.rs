@@ -139,7 +139,7 @@ impl Checker<'_> {
             None => self.check_expr(value, None),
         };
         match place {
-            Some(place) if !value.is_error() => Expr::new(ExprKind::Assign(place, Box::new(value)), ty, span),
+            Some(place) if !value.is_error() => Expr::new(ExprKind::Assign(Box::new(place), Box::new(value)), ty, span),
             _ => Expr::error(span),
         }
     }
@@ -158,9 +158,11 @@ impl Checker<'_> {
         match result.kind {
             _ if result.is_error() => result,
             ExprKind::Binary(op, _, b) if result.ty == ty || equivalent(&result.ty, &ty) || both_numbers => {
-                Expr::new(ExprKind::Update(op, place, b), ty, span)
+                Expr::new(ExprKind::Update(op, Box::new(place), b), ty, span)
             }
-            ExprKind::Call(..) if result.ty == ty => Expr::new(ExprKind::Assign(place, Box::new(result)), ty, span),
+            ExprKind::Call(..) if result.ty == ty => {
+                Expr::new(ExprKind::Assign(Box::new(place), Box::new(result)), ty, span)
+            }
             _ => {
                 let message = format!("`{}=` would turn {} into {}", op.symbol(), ty.named(), result.ty.named());
                 self.error("E0502", span, message, "store the result in a variable of its type");
@@ -177,7 +179,7 @@ impl Checker<'_> {
             self.error("E0502", span, format!("`{symbol}` does not take {}", ty.named()), ONLY_NUMBERS);
             return Expr::error(span);
         }
-        Expr::new(ExprKind::Step { place, increment, prefix }, ty, span)
+        Expr::new(ExprKind::Step { place: Box::new(place), increment, prefix }, ty, span)
     }
 }
 

@@ -35,7 +35,7 @@ impl Checker<'_> {
             if let Some(init) = init {
                 let (ty, span) = (init.ty.clone(), init.span);
                 let place = Place { var, path: Vec::new(), ty: ty.clone() };
-                let assign = Expr::new(ExprKind::Assign(place, Box::new(init)), ty, span);
+                let assign = Expr::new(ExprKind::Assign(Box::new(place), Box::new(init)), ty, span);
                 assigned.push(Stmt::Expr(assign));
             }
         }
@@ -59,10 +59,10 @@ impl Checker<'_> {
                 let condition = self.check_condition(condition);
                 let then = self.check_body(then);
                 let otherwise = otherwise.as_ref().map(|stmt| self.check_body(stmt)).unwrap_or_default();
-                out.push(Stmt::If(condition, then, otherwise));
+                out.push(Stmt::If(Box::new(condition), then, otherwise));
             }
             StmtKind::While { condition, body } => {
-                let condition = Some(self.check_condition(condition));
+                let condition = Some(Box::new(self.check_condition(condition)));
                 let body = self.check_loop_body(body);
                 out.push(Stmt::Loop {
                     init: Vec::new(),
@@ -75,7 +75,7 @@ impl Checker<'_> {
             }
             StmtKind::DoWhile { body, condition } => {
                 let body = self.check_loop_body(body);
-                let condition = Some(self.check_condition(condition));
+                let condition = Some(Box::new(self.check_condition(condition)));
                 out.push(Stmt::Loop {
                     init: Vec::new(),
                     condition,
@@ -88,14 +88,14 @@ impl Checker<'_> {
             StmtKind::For { init, condition, step, body } => self.scoped(|c| {
                 let mut first = Vec::new();
                 c.check_stmt(init, &mut first);
-                let condition = condition.as_ref().map(|condition| c.check_condition(condition));
-                let step = step.as_ref().map(|step| c.check_expr(step, None));
+                let condition = condition.as_ref().map(|condition| Box::new(c.check_condition(condition)));
+                let step = step.as_ref().map(|step| Box::new(c.check_expr(step, None)));
                 let body = c.check_loop_body(body);
                 out.push(Stmt::Loop { init: first, condition, step, body, test_last: false, span: stmt.span });
             }),
             StmtKind::Break => self.check_jump(stmt.span, "break", Stmt::Break, out),
             StmtKind::Continue => self.check_jump(stmt.span, "continue", Stmt::Continue, out),
-            StmtKind::Return(value) => self.check_return(stmt.span, value.as_ref(), out),
+            StmtKind::Return(value) => self.check_return(stmt.span, value.as_deref(), out),
         }
     }
 

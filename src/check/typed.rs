@@ -6,6 +6,7 @@ use crate::lang::types::Type;
 use std::sync::Arc;
 use velour_grammar::Span;
 use velour_grammar::ast::{BinaryOp, ShaderKind, UnaryOp};
+use velour_grammar::names::Name;
 
 /// Index into [`Shader::variables`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -66,7 +67,7 @@ pub struct Metadata {
 #[derive(Clone, Debug)]
 pub struct Variable {
     /// The name it was declared with.
-    pub name: String,
+    pub name: Name,
     /// Its type.
     pub ty: Type,
     /// Where it was declared.
@@ -98,15 +99,15 @@ pub enum Stmt {
     /// Statements in a scope of their own.
     Block(Vec<Stmt>),
     /// A choice; the condition is an int.
-    If(Expr, Vec<Stmt>, Vec<Stmt>),
+    If(Box<Expr>, Vec<Stmt>, Vec<Stmt>),
     /// A loop.
     Loop {
         /// Runs once before the loop.
         init: Vec<Stmt>,
         /// Tested before each round (after it when `test_last`); an int. Missing means true.
-        condition: Option<Expr>,
+        condition: Option<Box<Expr>>,
         /// Runs after each round.
-        step: Option<Expr>,
+        step: Option<Box<Expr>>,
         /// The body.
         body: Vec<Stmt>,
         /// True for `do … while`.
@@ -133,7 +134,7 @@ pub struct Expr {
     pub span: Span,
 }
 
-/// The checked expressions.
+/// The checked expressions. What is rare and large is boxed: a shader of ten thousand lines is made of a hundred thousand of these.
 #[derive(Clone, Debug)]
 pub enum ExprKind {
     /// An integer.
@@ -155,13 +156,13 @@ pub enum ExprKind {
     /// Values in order; the last one is the value.
     Comma(Vec<Expr>),
     /// Assignment; the value is the new one.
-    Assign(Place, Box<Expr>),
+    Assign(Box<Place>, Box<Expr>),
     /// Read, change and write back: `a op= b`.
-    Update(BinaryOp, Place, Box<Expr>),
+    Update(BinaryOp, Box<Place>, Box<Expr>),
     /// `++` and `--`: the amount (1 or -1), and whether the value is the new one.
     Step {
         /// What is changed.
-        place: Place,
+        place: Box<Place>,
         /// True for `++`.
         increment: bool,
         /// True when the value is the new one.
@@ -172,7 +173,7 @@ pub enum ExprKind {
     /// A call of a builtin.
     Builtin(&'static str, Vec<Argument>),
     /// A closure with its positional and keyword parameters.
-    Closure(ClosureId, Vec<Expr>, Vec<(u32, Expr)>),
+    Closure(ClosureId, Box<[Expr]>, Box<[(u32, Expr)]>),
     /// A triple or a matrix made of floats.
     Construct(Vec<Expr>),
     /// A triple or matrix made of floats that are given in a named space.

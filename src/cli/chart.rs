@@ -3,10 +3,12 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::speak::{say, tell};
+use crate::files::Destination;
 use crate::measure::chart::{Budget, Effort, density, draw, figure::Figure, figures, scene_figure, table};
 use crate::scene::{Scene, ShaderFiles};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `velour chart`.
@@ -77,7 +79,8 @@ fn write_figure(folder: &Path, figure: &Figure) -> Result<(), Failure> {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    std::fs::write(path, bytes).map_err(|error| unwritable(path, &error))
+    let written = Destination::at(path).and_then(|file| file.write(|sink| sink.write_all(bytes)));
+    written.map_err(|error| unwritable(path, &error))
 }
 
 fn unwritable(path: &Path, error: &std::io::Error) -> Failure {

@@ -3,10 +3,15 @@
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
-use super::speak::{colored, say, tell};
-use crate::compile::{Compiler, Recipe, Shader};
-use std::io::Read;
+use super::speak::{colored, say, say_as_it_is, tell};
+use super::watch::TimeBound;
+use crate::compile::{Checked, Compiler, Recipe, Shader};
+use crate::files::Destination;
+use crate::limits::SHADER_BYTES;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
+use velour_grammar::files::Access;
 use velour_grammar::{Diagnostics, Format, Sources};
 
 /// How messages look.
@@ -48,6 +53,9 @@ pub struct CheckArgs {
     /// Where the output of -E or -M goes, or the .oso file of `compile` [default: the shader's name ending with .oso]
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// End with an error when this takes more than S seconds
+    #[arg(long, value_name = "S")]
+    time: Option<f64>,
     #[command(flatten)]
     depend: DependArgs,
     #[command(flatten)]
@@ -73,10 +81,12 @@ struct DependArgs {
 
 /// Checks the files; all of them, whatever the first ones contain.
 pub fn run(args: &CheckArgs, make: bool) -> Result<(), Failure> {
+    let _bound = TimeBound::new(Instant::now(), args.time, "before all was checked");
     let compiler = args.compile.compiler()?;
     let (mut wrong, mut unreadable) = (false, false);
+    let mut last = None;
     for path in &args.files {
-        let (name, bytes) = match read(path) {
+        let (name, bytes) = match read(path, &compiler.options.access) {
             Ok(read) => read,
             Err(message) => {
                 tell(&message);
@@ -84,8 +94,10 @@ pub fn run(args: &CheckArgs, make: bool) -> Result<(), Failure> {
                 continue;
             }
         };
-        wrong |= !one(args, &compiler, (&name, &bytes), make)?;
+        wrong |= !one(args, &compiler, (&name, &bytes), make, &mut last)?;
     }
+    // The process ends with it: to free a large shader piece by piece takes a tenth of the time of checking it.
+    std::mem::forget(last);
     match (unreadable, wrong) {
         (true, _) => Err(Failure::Usage(String::new())),
         (_, true) => Err(Failure::Wrong(String::new())),
@@ -94,30 +106,40 @@ pub fn run(args: &CheckArgs, make: bool) -> Result<(), Failure> {
 }
 
 /// A file's name for messages and what is in it.
-fn read(path: &Path) -> Result<(String, Vec<u8>), String> {
+fn read(path: &Path, access: &Access) -> Result<(String, Vec<u8>), String> {
     let standard = path == Path::new("-");
     let name = if standard { "<stdin>".to_owned() } else { path.display().to_string() };
     let mut bytes = Vec::new();
-    let read =
-        if standard { std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes) } else { std::fs::read(path) };
+    let read = match standard {
+        true => std::io::stdin().lock().take(SHADER_BYTES).read_to_end(&mut bytes).map(|_| bytes),
+        false => access.read(path, SHADER_BYTES).map_err(std::io::Error::from),
+    };
     read.map(|bytes| (name.clone(), bytes)).map_err(|error| format!("{name}: error: cannot be read: {error}\n"))
 }
 
-/// Checks one file, and writes how it is compiled where that is wanted; true when it is right.
-fn one(args: &CheckArgs, compiler: &Compiler, (name, bytes): (&str, &[u8]), make: bool) -> Result<bool, Failure> {
+/// Checks one file, and writes how it is compiled where that is wanted; true when it is right. What there was to it takes the place of the
+/// one before.
+fn one(
+    args: &CheckArgs,
+    compiler: &Compiler,
+    (name, bytes): (&str, &[u8]),
+    make: bool,
+    last: &mut Option<Checked>,
+) -> Result<bool, Failure> {
     let right = if args.preprocess {
         let text = String::from_utf8_lossy(bytes);
         let (output, diagnostics, sources) = velour_grammar::preprocess(name, &text, &compiler.options);
         put(args.output.as_deref(), &output)?;
         report(args, diagnostics, &sources)
     } else {
-        let checked =
+        let mut checked =
             if args.all_warnings { compiler.check_closely(name, bytes) } else { compiler.check_bytes(name, bytes) };
         depend(args, compiler, name, &checked.sources)?;
-        let right = report(args, checked.diagnostics, &checked.sources);
+        let right = report(args, std::mem::take(&mut checked.diagnostics), &checked.sources);
         if make && !args.depend.only {
-            write_recipe(args, compiler, name, checked.shader.filter(|_| right))?;
+            write_recipe(args, compiler, name, checked.shader.as_ref().filter(|_| right))?;
         }
+        *last = Some(checked);
         right
     };
     if args.verbose && right {
@@ -127,7 +149,7 @@ fn one(args: &CheckArgs, compiler: &Compiler, (name, bytes): (&str, &[u8]), make
 }
 
 /// Writes how a right shader is compiled to the working folder, and says so as oslc does.
-fn write_recipe(args: &CheckArgs, compiler: &Compiler, name: &str, shader: Option<Shader>) -> Result<(), Failure> {
+fn write_recipe(args: &CheckArgs, compiler: &Compiler, name: &str, shader: Option<&Shader>) -> Result<(), Failure> {
     let Some(shader) = shader else {
         if !args.quiet {
             say(&format!("FAILED {name}\n"));
@@ -136,7 +158,7 @@ fn write_recipe(args: &CheckArgs, compiler: &Compiler, name: &str, shader: Optio
     };
     let failed = |reason: String| Failure::Usage(format!("{name}: error: {reason}"));
     let whole = |path: &Path| std::path::absolute(path).map_err(|error| failed(error.to_string()));
-    if !Path::new(name).is_file() {
+    if !compiler.options.access.is_file(Path::new(name)) {
         return Err(failed("what is to be compiled must be in a file, which is read again when it runs".to_owned()));
     }
     let include_dirs: Result<Vec<PathBuf>, Failure> =
@@ -150,7 +172,9 @@ fn write_recipe(args: &CheckArgs, compiler: &Compiler, name: &str, shader: Optio
         defines: compiler.options.defines.clone(),
         undefines: compiler.options.undefines.clone(),
     };
-    let text = recipe.text().ok_or_else(|| failed("a name with a line break cannot be written".to_owned()))?;
+    let text = recipe.text().ok_or_else(|| {
+        failed("names with line breaks, or of more than 64 kB together, cannot be written".to_owned())
+    })?;
     let target = args.output.clone().unwrap_or_else(|| format!("{}.oso", shader.name()).into());
     put(Some(&target), &text)?;
     if !args.quiet {
@@ -197,9 +221,9 @@ fn depend(args: &CheckArgs, compiler: &Compiler, name: &str, sources: &Sources) 
 /// Writes a text to a file, or to standard output.
 fn put(file: Option<&Path>, text: &str) -> Result<(), Failure> {
     let Some(file) = file else {
-        say(text);
+        say_as_it_is(text);
         return Ok(());
     };
-    std::fs::write(file, text)
-        .map_err(|error| Failure::Usage(format!("{}: error: cannot be written: {error}", file.display())))
+    let written = Destination::at(file).and_then(|file| file.write(|sink| sink.write_all(text.as_bytes())));
+    written.map_err(|error| Failure::Usage(format!("{}: error: cannot be written: {error}", file.display())))
 }

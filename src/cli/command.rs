@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::names::named;
 use super::speak::{lost, tell};
-use super::{chart, check, info, new, render, shade, tree, verify};
+use super::{chart, check, info, merge, new, render, shade, tree, verify};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -21,7 +21,9 @@ enum Command {
     /// Write a first scene and shader
     New(new::NewArgs),
     /// Render a scene to an image
-    Render(render::RenderArgs),
+    Render(Box<render::RenderArgs>),
+    /// Merge parts of a picture, which were rendered apart
+    Merge(merge::MergeArgs),
     /// Check shaders and report every mistake
     Check(check::CheckArgs),
     /// Check shaders and write .oso files that say how they are compiled, as OSL's oslc is used
@@ -38,7 +40,8 @@ enum Command {
     Info(info::InfoArgs),
 }
 
-/// Runs the command line and gives the exit status: 0 done, 1 a shader or scene is wrong, 2 usage or files.
+/// Runs the command line and gives the exit status: 0 done, 1 a shader or scene is wrong, 2 usage or files, 130 and 143 a render that
+/// was stopped by SIGINT and SIGTERM.
 pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse_from(gnu_style(named(std::env::args_os().collect()))) {
         Ok(arguments) => arguments,
@@ -51,6 +54,7 @@ pub fn run() -> ExitCode {
     let result = match arguments.command {
         Command::New(args) => new::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Merge(args) => merge::run(&args),
         Command::Check(args) => check::run(&args, false),
         Command::Compile(args) => check::run(&args, true),
         Command::Tree(args) => tree::run(&args),
@@ -64,6 +68,7 @@ pub fn run() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Wrong(message)) => fail(&message, 1),
         Err(Failure::Usage(message)) => fail(&message, 2),
+        Err(Failure::Stopped(status)) => ExitCode::from(status),
     }
 }
 

@@ -10,6 +10,8 @@ pub enum Failure {
     Wrong(String),
     /// The command was used wrongly, or a file cannot be read or written: status 2.
     Usage(String),
+    /// Somebody has asked the render to stop, and what there was is kept: the status that goes with the signal.
+    Stopped(u8),
 }
 
 impl Failure {

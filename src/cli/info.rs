@@ -48,7 +48,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         return Ok(());
     };
     let about_shader = args.verbose || args.terse || args.json || args.param.is_some() || !args.path.is_empty();
-    if let Some(path) = shader_file(args, subject, about_shader) {
+    if let Some(path) = shader_file(args, subject, about_shader, &args.compile.access()?) {
         return file(args, &path);
     }
     let text = one(table, &header, subject);
@@ -60,13 +60,18 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 }
 
 /// The file of a shader: a path, or where it is asked for by name, its file here or in the folders of `--path`.
-fn shader_file(args: &InfoArgs, subject: &str, by_name: bool) -> Option<PathBuf> {
+fn shader_file(
+    args: &InfoArgs,
+    subject: &str,
+    by_name: bool,
+    access: &velour_grammar::files::Access,
+) -> Option<PathBuf> {
     if subject.ends_with(".osl") || Path::new(subject).is_file() {
         return Some(PathBuf::from(subject));
     }
     let mut folders = vec![PathBuf::from(".")];
     folders.extend(args.path.iter().cloned());
-    find_shader(subject, &folders).filter(|_| by_name)
+    find_shader(subject, &folders, access).filter(|_| by_name)
 }
 
 fn file(args: &InfoArgs, path: &Path) -> Result<(), Failure> {
@@ -76,7 +81,7 @@ fn file(args: &InfoArgs, path: &Path) -> Result<(), Failure> {
     })?;
     let mut shader = (*shader.typed).clone();
     if let Some(name) = &args.param {
-        shader.params.retain(|param| shader.variables[param.var.0 as usize].name == *name);
+        shader.params.retain(|param| shader.variables[param.var.0 as usize].name == name.as_str());
         if shader.params.is_empty() {
             return Err(Failure::Wrong(format!("error: shader `{}` has no parameter `{name}`", shader.name)));
         }

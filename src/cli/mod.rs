@@ -7,13 +7,18 @@ mod compile;
 mod failure;
 mod info;
 mod info_file;
+mod keep;
+mod merge;
 mod names;
 mod new;
 mod render;
 mod shade;
+mod share;
 mod speak;
 mod threads;
 mod tree;
 mod verify;
+mod watch;
 
 pub use command::run;
+pub use shade::Rounds;

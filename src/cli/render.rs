@@ -2,15 +2,19 @@
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
-use super::speak::{say, tell};
+use super::keep::{Keeping, Signals};
+use super::share::Share;
+use super::speak::{leave_output, say, tell};
 use super::threads::capped;
+use super::watch::TimeBound;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
+use crate::limits::{PRINTED, PRINTED_BYTES};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
-use crate::render::{Explanation, Image, LightChoice, LightPoints, Progress, Renderer, Settings, Terminator, output};
+use crate::render::part::{self, Ranges};
+use crate::render::{About, Explanation, LightChoice, LightPoints, Renderer, Settings, Terminator, output};
 use crate::scene::{Scene, ShaderFiles};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -26,7 +30,7 @@ pub struct RenderArgs {
     /// The image, as testrender takes it
     #[arg(value_name = "IMAGE", conflicts_with = "output")]
     image: Option<PathBuf>,
-    /// Threads; 0 for one a core, and at most 64 or four for each
+    /// Threads; 0 for one a core, and at most four for each
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
     /// Width and height in pixels [default: what the scene states, or 640 480]
@@ -47,6 +51,18 @@ pub struct RenderArgs {
     /// Stop after S seconds; samples go where they lower the error most
     #[arg(long, value_name = "S")]
     time: Option<f64>,
+    /// Render these samples of each pixel alone, such as 64..128, and leave a part for `velour merge`
+    #[arg(long, value_name = "A..B", conflicts_with_all = ["spp", "aa", "noise", "time"])]
+    samples: Option<Ranges>,
+    /// Render the third of eight shares of all samples (3/8) alone, and leave a part for `velour merge`
+    #[arg(long, value_name = "K/N", conflicts_with_all = ["samples", "noise", "time"])]
+    share: Option<Share>,
+    /// Go on from this part, which a stopped render or --samples has left; the picture goes there if no other is named
+    #[arg(long, value_name = "PART", conflicts_with_all = ["noise", "time"])]
+    resume: Option<PathBuf>,
+    /// Keep what there is every S seconds, for --resume; 0 keeps nothing before the end or a signal
+    #[arg(long, value_name = "S", default_value_t = 60.0)]
+    checkpoint: f64,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u32,
@@ -105,6 +121,13 @@ pub struct RenderArgs {
     testrender: TestrenderArgs,
 }
 
+impl RenderArgs {
+    /// Is the picture to be a part, which more samples can be added to?
+    fn leaves_part(&self) -> bool {
+        self.samples.is_some() || self.share.is_some() || self.resume.is_some()
+    }
+}
+
 /// What testrender's command line may say and this renderer has no use for.
 #[derive(clap::Args)]
 struct TestrenderArgs {
@@ -137,34 +160,10 @@ impl TestrenderArgs {
     }
 }
 
-/// A bar on a terminal, nothing elsewhere.
-struct Bar {
-    bar: ProgressBar,
-}
-
-impl Bar {
-    fn new() -> Self {
-        // indicatif draws nothing when standard error is no terminal.
-        let bar = ProgressBar::new(0);
-        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left");
-        if let Ok(style) = style {
-            bar.set_style(style);
-        }
-        Bar { bar }
-    }
-}
-
-impl Progress for Bar {
-    fn tiles(&self, done: usize, total: usize) {
-        self.bar.set_length(total as u64);
-        self.bar.set_position(done as u64);
-    }
-}
-
 /// Renders the scene and writes the image.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
-    let path = args.output.as_ref().or(args.image.as_ref());
+    let path = args.output.as_ref().or(args.image.as_ref()).or(args.resume.as_ref());
     let none = || Failure::Usage("error: no image is named\n  help: add `-o picture.png`".to_owned());
     // To look at one pixel no image is needed.
     let debug = <[u32; 2]>::try_from(&args.debug_pixel[..]).ok();
@@ -173,27 +172,41 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         (path, _) => path.ok_or_else(none)?,
     };
     if debug.is_none() {
-        output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+        check_output(args, path)?;
     }
     if args.res.len() > 2 || args.debug_pixel.len() > 2 {
         let text = "error: --res and --debug-pixel are given once\n  help: take one of them out";
         return Err(Failure::Usage(text.to_owned()));
     }
+    if output::is_standard_output(path) {
+        leave_output();
+    }
+    let loading = TimeBound::new(start, args.time, "while the scene was made ready");
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     args.testrender.note();
     let compiler = ShaderFiles::new(args.compile.compiler()?).lenient(!args.strict);
     let mut scene = Scene::load(&args.scene, &args.path, &compiler).map_err(Failure::of_scene)?;
-    if let Some(megabytes) = args.texture_memory {
-        scene.textures = Arc::new(scene.textures.limited(megabytes << 20));
+    let textures = args.texture_memory.map(|megabytes| megabytes.saturating_mul(1 << 20));
+    if let Some(bytes) = textures.or(args.compile.memory.map(|bytes| bytes / 2)) {
+        scene.textures = Arc::new(scene.textures.limited(bytes));
     }
     for warning in &scene.warnings {
         tell(&format!("{warning}\n"));
     }
     let mut settings = settings(args).with_options(&scene.options);
+    if let Some(range) = args.samples.as_ref().and_then(|ranges| ranges.iter().next()) {
+        (settings.first_sample, settings.samples) = (range.start, range.end);
+    }
+    if let Some(share) = args.share {
+        let few = || Failure::Usage(format!("error: {} samples are too few for so many shares", settings.samples));
+        let range = share.range(settings.samples).ok_or_else(few)?;
+        (settings.first_sample, settings.samples) = (range.start, range.end);
+    }
     if let ([], Some(stated)) = (&args.res[..], scene.options.resolution) {
         [settings.width, settings.height] = stated;
     }
     settings.threads = capped(args.threads);
+    settings.seconds = args.time.map(|seconds| time_to_trace(seconds, start, &settings));
     if let Some(tolerance) = args.tolerance {
         settings.closure = chosen(args, tolerance, settings.closure);
     }
@@ -201,19 +214,44 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         say(&Explanation::new(&scene, &settings).to_string());
     }
     let mut renderer = Renderer::new(&scene, &settings).map_err(Failure::of_render)?;
+    drop(loading);
     if !renderer.plan().gives_light() {
         tell("warning: nothing in the scene gives light, so it is black\n");
     }
     if let Some(pixel) = debug {
         return debug_pixel(&renderer, pixel);
     }
-    let bar = Bar::new();
-    renderer.finish(&bar).map_err(Failure::of_render)?;
-    bar.bar.finish_and_clear();
-    let image = renderer.picture();
-    pass_on(&image.about.reports);
-    output::write(&image, path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
-    tell(&last_line(&image, path, start.elapsed().as_secs_f64()));
+    if let Some(file) = &args.resume {
+        let wrong = |error| Failure::Wrong(format!("error: {error}"));
+        let part = part::read(file).map_err(|error| Failure::Usage(format!("error: {error}")))?;
+        renderer.resume(part).map_err(wrong)?;
+    }
+    let every = Some(args.checkpoint).filter(|seconds| *seconds > 0.0);
+    let keeping = Keeping { output: path, every, parts: args.leaves_part() };
+    let signals = Signals::listen(renderer.stop())?;
+    let done = keeping.render(&mut renderer, &signals)?;
+    let about = renderer.picture().about;
+    pass_on(&about.reports);
+    keeping.write(&renderer, done)?;
+    if let Some(status) = signals.asked().filter(|_| !done) {
+        return Err(Failure::Stopped(status));
+    }
+    tell(&last_line(&about, renderer.settings(), path, start.elapsed().as_secs_f64()));
+    Ok(())
+}
+
+/// Says before the render what could not be written after it.
+fn check_output(args: &RenderArgs, path: &std::path::Path) -> Result<(), Failure> {
+    let format = output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    let usage = |text: &str| Err(Failure::Usage(format!("error: {text}")));
+    if args.samples.as_ref().is_some_and(|ranges| ranges.iter().count() != 1) {
+        return usage("--samples takes one range, such as 64..128\n  help: render the ranges apart and merge them");
+    }
+    if (args.samples.is_some() || args.share.is_some()) && format != output::Format::Exr {
+        return usage(
+            "--samples and --share leave a part of a picture, which is an .exr\n  help: `velour merge part.exr -o picture.png` makes another file of it",
+        );
+    }
     Ok(())
 }
 
@@ -285,9 +323,21 @@ fn chosen(args: &RenderArgs, tolerance: f64, closure: closure::Settings) -> clos
     choice.closure
 }
 
+/// What loading has left of a time, and writing the picture will need of it: a tenth of a microsecond a pixel.
+fn time_to_trace(seconds: f64, start: Instant, settings: &Settings) -> f64 {
+    let writing = f64::from(settings.width) * f64::from(settings.height) * 1e-7;
+    (seconds - start.elapsed().as_secs_f64() - writing.min(0.5 * seconds)).max(1e-3)
+}
+
 /// Passes on what shaders said.
 fn pass_on(reports: &[Report]) {
-    for report in reports {
+    let mut bytes = 0;
+    let mut fits = |report: &&Report| {
+        bytes += report.text.len();
+        bytes <= PRINTED_BYTES
+    };
+    let told = reports.iter().take(PRINTED).take_while(&mut fits).count();
+    for report in &reports[..told] {
         match &report.kind {
             ReportKind::Output => say(&report.text),
             ReportKind::File(_) => tell(&report.to_string()),
@@ -296,10 +346,12 @@ fn pass_on(reports: &[Report]) {
             }
         }
     }
+    if reports.len() > told {
+        tell(&format!("and {} more\n", reports.len() - told));
+    }
 }
 
-fn last_line(image: &Image, path: &std::path::Path, seconds: f64) -> String {
-    let about = &image.about;
+fn last_line(about: &About, settings: &Settings, path: &std::path::Path, seconds: f64) -> String {
     let rate = about.paths as f64 / about.seconds_tracing.max(1e-9) / 1e6;
     let [fewest, most] = about.taken;
     let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
@@ -307,7 +359,7 @@ fn last_line(image: &Image, path: &std::path::Path, seconds: f64) -> String {
     format!(
         "{}: {} x {}, {samples} samples a pixel, {noise}{seconds:.2} s, {rate:.2} million paths a second\n",
         path.display(),
-        image.width,
-        image.height,
+        settings.width,
+        settings.height,
     )
 }

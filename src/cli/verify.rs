@@ -4,15 +4,18 @@ use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::speak::{colored, say, tell};
 use super::threads::capped;
+use super::watch::TimeBound;
 use crate::closure::settings::Shadowing;
 use crate::closure::{Layering, Settings};
-use crate::compile::{Compiler, Shader};
+use crate::compile::{Compiler, GroupError, Shader};
+use crate::limits::SHADER_BYTES;
 use crate::measure::verify::{
-    Check, ClosureSubject, Effort, Finding, Line, Report, ShaderSubject, Subject, Verdict, verify,
+    Check, ClosureSubject, Effort, Finding, Line, Report, ShaderSubject, Subject, Verdict, cannot_run, verify,
 };
 use crate::scene::nearest;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::Path;
+use std::time::Instant;
 use velour_grammar::Format;
 
 /// Arguments of `velour verify`.
@@ -42,12 +45,16 @@ pub struct VerifyArgs {
     /// Shadowing term of sheen where the shader does not say: exact, published, ashikhmin or series
     #[arg(long, default_value = "exact")]
     shadowing: Shadowing,
+    /// End with an error when this takes more than S seconds
+    #[arg(long, value_name = "S")]
+    time: Option<f64>,
     #[command(flatten)]
     compile: CompileArgs,
 }
 
 /// Verifies the subjects and prints the table.
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
+    let _bound = TimeBound::new(Instant::now(), args.time, "before all was verified");
     let subjects = subjects(args)?;
     let subjects: Vec<&dyn Subject> = subjects.iter().map(AsRef::as_ref).collect();
     let effort = args.effort();
@@ -117,8 +124,11 @@ impl VerifyArgs {
 
 /// Compiles a file, with all it has to say; nothing when it is wrong.
 fn shader(compiler: &Compiler, name: &str) -> Result<Option<Shader>, Failure> {
-    let bytes =
-        std::fs::read(name).map_err(|error| Failure::Usage(format!("{name}: error: cannot be read: {error}")))?;
+    let bytes = compiler
+        .options
+        .access
+        .read(Path::new(name), SHADER_BYTES)
+        .map_err(|error| Failure::Usage(format!("{name}: error: cannot be read: {error}")))?;
     let checked = compiler.check_bytes(name, &bytes);
     let text = checked.sources.render(&checked.diagnostics, Format::Full, colored());
     if !text.is_empty() {
@@ -134,8 +144,15 @@ fn shader_subject(
     settings: Settings,
 ) -> Result<Box<dyn Subject>, Failure> {
     let given: Vec<(String, String)> = args.param.chunks(2).map(|pair| (pair[0].clone(), pair[1].clone())).collect();
-    let subject = ShaderSubject::new(name, shader, &given, settings, &args.effort());
-    Ok(Box::new(subject.map_err(|error| Failure::Wrong(error.to_string()))?))
+    let wrong = |error: GroupError| Failure::Wrong(error.to_string());
+    // A shader that cannot be run is not tried at thousands of places.
+    let group = given.iter().fold(shader.group(), |group, (name, text)| group.text(name, text)).build();
+    if let Ok(group) = group
+        && let Some(report) = cannot_run(&group)
+    {
+        return Err(Failure::Wrong(report.to_string()));
+    }
+    Ok(Box::new(ShaderSubject::new(name, shader, &given, settings, &args.effort()).map_err(wrong)?))
 }
 
 fn unknown(compiler: &Compiler, name: &str) -> String {

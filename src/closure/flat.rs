@@ -24,7 +24,7 @@ pub struct LeftOut {
 /// How many dropped lanes are listed.
 const MOST_DROPPED: usize = 256;
 
-/// A closure that was left out of a lane because a weight or parameter was not a number or too large, or lobes were too many.
+/// A closure that was left out of a lane because a weight or parameter was not a number or too large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dropped {
     /// The closure's name.
@@ -89,6 +89,8 @@ pub struct Flat {
     pub emits: bool,
     /// What was left out because a number in it is none.
     pub dropped: Vec<Dropped>,
+    /// Where there were too many lobes or layers.
+    pub crowded: Option<NodeId>,
     /// What was left out because it is not rendered.
     pub left_out: Vec<LeftOut>,
 }
@@ -111,6 +113,7 @@ impl Flat {
         self.lobes.clear();
         self.weights.clear();
         self.dropped.clear();
+        self.crowded = None;
         self.left_out.clear();
     }
 

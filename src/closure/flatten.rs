@@ -15,19 +15,21 @@ use super::store::NONE;
 use super::tops::Tops;
 use super::tree::{Ints, Node, NodeId, Tree};
 use super::weights::{Operand, Weight, Weights, multiply, normalise_lanes, share_lanes, usable, usable_and_some};
+use crate::limits::LOBES;
 use glam::Vec3;
-
-/// More lobes or pending weights than this are dropped and reported: a shared base under many different layers could
-/// otherwise grow without bound. So many lobes take a gigabyte in a batch of 512 lanes.
-const MOST: usize = 1 << 17;
+use std::collections::HashMap;
 
 /// What reaches a node, as a list a node.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     next: u32,
+    node: u32,
     layer: u32,
     weight: Weight,
 }
+
+/// Entries of a node that are looked through before the table is asked.
+const FEW: usize = 8;
 
 /// Light or a hole on its way to the sums of a batch.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +45,9 @@ struct Emitter {
 pub struct Sweep {
     heads: Vec<u32>,
     entries: Vec<Entry>,
+    /// Entries by node and layer, as far as they are noted.
+    places: HashMap<(u32, u32), u32>,
+    noted: usize,
     weights: Weights,
     tops: Tops,
     emitters: Vec<Emitter>,
@@ -56,6 +61,9 @@ impl Sweep {
         self.heads.resize(nodes, NONE);
         self.tops.clear(nodes);
         self.entries.clear();
+        if self.noted > 0 {
+            (self.places, self.noted) = (HashMap::new(), 0);
+        }
         self.weights.clear();
         self.emitters.clear();
         self.coated.clear();
@@ -64,20 +72,32 @@ impl Sweep {
     /// Sends a weight to a node; false when there are too many.
     fn send(&mut self, lanes: usize, node: Option<NodeId>, layer: u32, weight: Weight) -> bool {
         let Some(NodeId(node)) = node else { return true };
-        let mut at = self.heads[node as usize];
-        while at != NONE {
+        let (mut at, mut seen) = (self.heads[node as usize], 0);
+        while at != NONE && seen < FEW {
             let entry = self.entries[at as usize];
             if entry.layer == layer {
                 let sum = self.weights.plus(lanes, entry.weight, weight);
                 self.entries[at as usize].weight = sum;
                 return true;
             }
-            at = entry.next;
+            (at, seen) = (entry.next, seen + 1);
         }
-        if self.entries.len() >= MOST {
+        if at != NONE {
+            // A long list is a hash table as well, or many layers over one node would be quadratic.
+            for (index, entry) in self.entries.iter().enumerate().skip(self.noted) {
+                self.places.insert((entry.node, entry.layer), index as u32);
+            }
+            self.noted = self.entries.len();
+            if let Some(&known) = self.places.get(&(node, layer)) {
+                let sum = self.weights.plus(lanes, self.entries[known as usize].weight, weight);
+                self.entries[known as usize].weight = sum;
+                return true;
+            }
+        }
+        if self.entries.len() >= LOBES {
             return false;
         }
-        self.entries.push(Entry { next: self.heads[node as usize], layer, weight });
+        self.entries.push(Entry { next: self.heads[node as usize], node, layer, weight });
         self.heads[node as usize] = self.entries.len() as u32 - 1;
         true
     }
@@ -90,7 +110,7 @@ pub fn flatten(flat: &mut Flat, sweep: &mut Sweep, library: &Library, tree: &Tre
     if let Some(root) = tree.root {
         pass.sweep.send(tree.lanes, Some(root), NONE, Weight::Uniform([1.0; 3]));
         for index in (0..=root.0).rev() {
-            if pass.sweep.heads[index as usize] != NONE {
+            if pass.sweep.heads[index as usize] != NONE && pass.flat.crowded.is_none() {
                 pass.visit(index);
             }
         }
@@ -120,10 +140,9 @@ impl Pass<'_> {
         let mut ready = std::mem::take(&mut self.sweep.ready);
         let mut at = self.sweep.heads[index as usize];
         while at != NONE {
-            let Entry { next, layer, weight } = self.sweep.entries[at as usize];
+            let Entry { next, layer, weight, .. } = self.sweep.entries[at as usize];
             at = next;
             let sweep = &mut *self.sweep;
-            let mut name = "too many lobes";
             let fits = match tree.nodes[index as usize] {
                 Node::Scale { weight: factor, child } => {
                     let weight = sweep.weights.times(tree, weight, factor);
@@ -140,7 +159,7 @@ impl Pass<'_> {
                         && no.is_none_or(|w| sweep.send(n, otherwise, layer, w))
                 }
                 Node::Leaf { closure, .. } => {
-                    name = self.library.get(closure).name;
+                    let name = self.library.get(closure).name;
                     let coat = self.flat.layers.coat(layer);
                     if !ready.iter().any(|(c, _)| *c == coat) {
                         ready.push((coat, self.make_ready(index, coat)));
@@ -150,7 +169,8 @@ impl Pass<'_> {
                 }
             };
             if !fits {
-                self.flat.drop_lane((name, NodeId(index)), 0);
+                self.flat.crowded = Some(NodeId(index));
+                break;
             }
         }
         ready.clear();
@@ -215,7 +235,7 @@ impl Pass<'_> {
                 }
             };
             let layers = &mut self.flat.layers;
-            if layers.list.len() >= MOST {
+            if layers.list.len() >= LOBES {
                 return false;
             }
             let depth = layers.depth(layer) + 1;
@@ -242,7 +262,7 @@ impl Pass<'_> {
         let (n, tree) = (self.tree.lanes, self.tree);
         let (tint, model) = (part.tint.or(leaf.tint), part.model);
         let flat = &mut *self.flat;
-        if flat.lobes.len() >= MOST {
+        if flat.lobes.len() >= LOBES {
             return false;
         }
         let made = flat.models.list[model as usize];

@@ -8,7 +8,7 @@ use super::library::Library;
 use super::sampling::{Sampler, Samples};
 use super::settings::Settings;
 use super::store::NONE;
-use super::tree::Tree;
+use super::tree::{NodeId, Tree};
 use crate::math::columns::Column3;
 
 /// One lobe of one lane, for people to read.
@@ -76,6 +76,11 @@ impl Lobes {
     /// What was left out, one entry a closure and lane.
     pub fn dropped(&self) -> &[Dropped] {
         &self.flat.dropped
+    }
+
+    /// The node at which there were more lobes or layers than [`crate::limits::LOBES`]; the others are not there.
+    pub fn crowded(&self) -> Option<NodeId> {
+        self.flat.crowded
     }
 
     /// What was left out of the batch because it is not rendered, each closure of the tree once.

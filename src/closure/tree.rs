@@ -131,6 +131,12 @@ impl Tree {
         Some(self.sites[at].1)
     }
 
+    /// Where the last leaf of those up to a node was written, if that was noted.
+    pub fn site_near(&self, node: NodeId) -> Option<u32> {
+        let after = self.sites.partition_point(|&(leaf, _)| leaf <= node);
+        self.sites[..after].last().map(|&(_, site)| site)
+    }
+
     /// Adds a node.
     pub fn push(&mut self, node: Node) -> NodeId {
         self.nodes.push(node);

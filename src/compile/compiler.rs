@@ -5,6 +5,7 @@ use super::recipe::Recipe;
 use super::shader::Shader;
 use crate::check::check;
 use crate::closure::Library;
+use crate::limits::SHADER_BYTES;
 use std::path::Path;
 use std::sync::Arc;
 use velour_grammar::{Diagnostics, Options, Severity, Sources, parse, parse_bytes};
@@ -46,6 +47,8 @@ pub struct Checked {
     pub diagnostics: Diagnostics,
     /// The text they refer to.
     pub sources: Sources,
+    /// What was parsed. Whoever ends after this need not take the time to free it.
+    pub tree: velour_grammar::ast::File,
 }
 
 impl Checked {
@@ -123,7 +126,7 @@ impl Compiler {
                 closures: self.closures.clone(),
             });
         }
-        let mut checked = Checked { shader, diagnostics, sources: parsed.sources };
+        let mut checked = Checked { shader, diagnostics, sources: parsed.sources, tree: parsed.file };
         checked.drop_quiet();
         checked
     }
@@ -141,29 +144,37 @@ impl Compiler {
     /// # Errors
     /// The file cannot be read, or its text is wrong.
     pub fn compile_file(&self, path: &Path) -> Result<Shader, CompileError> {
-        if let Some(recipe) = Recipe::of_file(path) {
-            let mut compiler = self.clone();
-            if let Some(header) = &recipe.header {
-                let name = header.display().to_string();
-                let text = std::fs::read_to_string(header);
-                let text = text.map_err(|error| CompileError::File { name: name.clone(), error })?;
-                compiler = compiler.with_header(&name, &text);
-            }
-            compiler.options.include_dirs.splice(0..0, recipe.include_dirs);
-            compiler.options.defines.splice(0..0, recipe.defines);
-            compiler.options.undefines.splice(0..0, recipe.undefines);
-            return compiler.compile_text_of(&recipe.source, recipe.name);
+        let Some(recipe) = Recipe::of_file(path, &self.options.access) else {
+            return self.compile_text_of(path, path.display().to_string());
+        };
+        let mut compiler = self.clone();
+        if let Some(header) = &recipe.header {
+            let name = header.display().to_string();
+            let text = String::from_utf8(self.read(header, &name)?).map_err(|_| CompileError::File {
+                name: name.clone(),
+                error: std::io::Error::other("it is not UTF-8 text"),
+            })?;
+            compiler = compiler.with_header(&name, &text);
         }
-        self.compile_text_of(path, path.display().to_string())
+        compiler.options.include_dirs.splice(0..0, recipe.include_dirs);
+        compiler.options.defines.splice(0..0, recipe.defines);
+        compiler.options.undefines.splice(0..0, recipe.undefines);
+        compiler.compile_text_of(&recipe.source, recipe.name)
+    }
+
+    /// The bytes of a file that may be read, which messages call `name`.
+    fn read(&self, path: &Path, name: &str) -> Result<Vec<u8>, CompileError> {
+        let read = self.options.access.read(path, SHADER_BYTES);
+        read.map_err(|error| CompileError::File { name: name.to_owned(), error: error.into() })
     }
 
     fn compile_text_of(&self, path: &Path, name: String) -> Result<Shader, CompileError> {
-        let bytes = std::fs::read(path).map_err(|error| CompileError::File { name: name.clone(), error })?;
+        let bytes = self.read(path, &name)?;
         Self::require(self.check_bytes(&name, &bytes))
     }
 
     fn require(checked: Checked) -> Result<Shader, CompileError> {
-        let Checked { shader, diagnostics, sources } = checked;
+        let Checked { shader, diagnostics, sources, .. } = checked;
         shader.ok_or(CompileError::Text { diagnostics, sources })
     }
 }

@@ -6,7 +6,9 @@
 //! checks finds no new files. Rejected: `check` that writes as oslc does, which surprises; preprocessed text, which goes
 //! stale and loses the places of messages; OSL's own code, which velour would have to write and read for others' tools alone.
 
+use crate::limits::RECIPE_BYTES;
 use std::path::{Path, PathBuf};
+use velour_grammar::files::Access;
 
 /// How a shader is compiled.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -30,9 +32,9 @@ const HEAD: &str = "velour 1: how a shader is compiled, no code; OSL's tools can
 
 impl Recipe {
     /// The recipe in a file, when there is one: `.oso` files of OSL's own are none.
-    pub fn of_file(path: &Path) -> Option<Self> {
+    pub fn of_file(path: &Path, access: &Access) -> Option<Self> {
         path.extension().filter(|extension| *extension == "oso")?;
-        Recipe::read(&std::fs::read_to_string(path).ok()?)
+        Recipe::read(&String::from_utf8(access.read(path, RECIPE_BYTES).ok()?).ok()?)
     }
 
     /// The recipe that a text holds.
@@ -55,7 +57,8 @@ impl Recipe {
         (!recipe.source.as_os_str().is_empty()).then_some(recipe)
     }
 
-    /// As a text that [`Recipe::read`] reads. Nothing where a name has a line break in it, which no line can hold.
+    /// As a text that [`Recipe::read`] reads. Nothing where a name has a line break in it, which no line can hold, or
+    /// where that text is longer than may be read.
     pub fn text(&self) -> Option<String> {
         let paths = [("source", &self.source)].into_iter().chain(self.header.iter().map(|header| ("header", header)));
         let paths = paths.chain(self.include_dirs.iter().map(|dir| ("include", dir)));
@@ -64,7 +67,8 @@ impl Recipe {
         lines.extend(paths.map(|(key, path)| format!("{key} {}", path.display())));
         lines.extend(self.defines.iter().map(|(name, value)| format!("define {name} {value}")));
         lines.extend(self.undefines.iter().map(|name| format!("undefine {name}")));
-        lines.iter().all(|line| !line.contains(['\n', '\r'])).then(|| lines.join("\n") + "\n")
+        let whole = lines.iter().all(|line| !line.contains(['\n', '\r']));
+        whole.then(|| lines.join("\n") + "\n").filter(|text| text.len() as u64 <= RECIPE_BYTES)
     }
 }
 
@@ -83,7 +87,8 @@ mod tests {
             undefines: vec!["X".into()],
         };
         assert_eq!(Recipe::read(&recipe.text().unwrap()), Some(recipe.clone()));
-        assert_eq!(Recipe { source: "a\nsource b".into(), ..recipe }.text(), None);
+        assert_eq!(Recipe { source: "a\nsource b".into(), ..recipe.clone() }.text(), None);
+        assert_eq!(Recipe { name: "a".repeat(RECIPE_BYTES as usize), ..recipe }.text(), None);
         for text in ["", "OpenShadingLanguage 1.00\nshader a\n", HEAD, &format!("{HEAD}\nsource a\nlater b\n")] {
             assert_eq!(Recipe::read(text), None, "{text}");
         }

@@ -13,7 +13,8 @@ impl Run<'_> {
         if wanted >= 0 && (wanted as u32) < len {
             return wanted as usize;
         }
-        if self.s.mask[lane] != 0 {
+        // Told of a few times; after that it costs no more than the element.
+        if self.s.mask[lane] != 0 && self.tells_mistakes() {
             let message = match len.checked_sub(1) {
                 Some(last) => format!("index {wanted} is outside 0..{last}"),
                 None => format!("index {wanted} is outside an array without elements"),

@@ -4,8 +4,19 @@ use super::run::Run;
 use crate::closure::tree::{Floats, Ints, Node, NodeId, Param};
 use crate::ir::program::*;
 use crate::lang::closures::{ClosureId, ParamKind};
+use crate::limits::{CLOSURE_NODES, CLOSURE_NUMBERS};
+use velour_grammar::Span;
 
 impl Run<'_> {
+    /// Gives the batch up when its closures take too much memory.
+    pub(super) fn check_closures(&mut self, span: Span) {
+        if self.tree.nodes.len() > CLOSURE_NODES {
+            self.fatal(span, &format!("a batch has more than {CLOSURE_NODES} closures, sums and products of them"));
+        } else if self.tree.floats.len() + self.tree.ints.len() > CLOSURE_NUMBERS {
+            self.fatal(span, &format!("the closures of a batch have more than {CLOSURE_NUMBERS} numbers together"));
+        }
+    }
+
     fn floats(&mut self, reg: Reg) -> Floats {
         let column = &self.regs.floats[reg.0 as usize];
         if self.group.program.regs[reg.0 as usize].uniform {

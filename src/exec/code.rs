@@ -1,5 +1,6 @@
 //! Control flow and instructions: the loop that everything else of the machine is called from.
 
+use super::cost;
 use super::kernels as k;
 use super::run::Run;
 use crate::ir::op::{Binary, Pair, Unary};
@@ -136,7 +137,10 @@ impl Run<'_> {
             if self.active == 0 || self.stopped {
                 break;
             }
-            if !self.spend(8) {
+            self.charge(8);
+            self.check_closures(span);
+            self.ask_host();
+            if self.budget == 0 {
                 self.fatal(span, "a loop does not end: the batch has run as many instructions as it may");
                 break;
             }
@@ -148,19 +152,19 @@ impl Run<'_> {
         self.s.spare.push(done);
     }
 
-    /// Takes from the budget; false when it is used up.
-    fn spend(&mut self, cost: u64) -> bool {
-        self.budget = self.budget.saturating_sub(cost);
-        self.budget > 0
-    }
-
     fn unary(&mut self, op: Unary, d: Reg, a: Reg) {
+        if cost::is_costly(op) {
+            self.charge(self.n as u64 / cost::LANES_A_FUNCTION);
+        }
         if let Ok([dst, a]) = self.regs.floats.get_disjoint_mut([d.0 as usize, a.0 as usize]) {
             k::unary(op, dst, a);
         }
     }
 
     fn binary(&mut self, op: Binary, d: Reg, a: Reg, b: Reg) {
+        if matches!(op, Binary::Pow | Binary::Atan2 | Binary::Mod) {
+            self.charge(self.n as u64 / cost::LANES_A_POWER);
+        }
         let floats = &mut self.regs.floats;
         if let Ok([dst, a, b]) = floats.get_disjoint_mut([d.0 as usize, a.0 as usize, b.0 as usize]) {
             k::binary(op, dst, a, b);
@@ -194,9 +198,11 @@ impl Run<'_> {
             // The optimizer has replaced every derivative.
             Instr::Derivative(d, ..) => self.regs.floats[d.0 as usize].fill(0.0),
             Instr::ArrayGet { dst, array, component, index, span } => {
+                self.charge(self.lanes_of(*dst) as u64 / cost::LANES_AN_ELEMENT);
                 self.array_get(*dst, *array, *component, *index, *span);
             }
             Instr::ArraySet { array, component, index, src, masked, span } => {
+                self.charge(self.n as u64 / cost::LANES_AN_ELEMENT);
                 self.array_set(*array, *component, (*index, *src), *masked, *span);
             }
             Instr::Call { routine, dst, src, span } => self.call(routine, dst, src, *span),
@@ -205,6 +211,7 @@ impl Run<'_> {
                 if let Some(leaf) = self.closure(*dst) {
                     self.tree.note_site(leaf, span.first);
                 }
+                self.check_closures(*span);
             }
             Instr::ClosureAdd(d, a, b) => {
                 let (a, b) = (self.closure(*a), self.closure(*b));

@@ -1,11 +1,12 @@
 //! Dictionaries that shaders search, and the nodes that each lane has found.
 
-use super::found::{Found, MOST_DICTIONARIES, MOST_FOUND};
+use super::found::Found;
 use super::lane::Lane;
 use super::report::Mistake;
 use super::run::Run;
 use crate::ir::op::AttributeType;
 use crate::ir::program::Reg;
+use crate::limits::{DICTIONARIES, FOUND_NODES};
 use crate::ops::dictionary::Dictionary;
 use std::sync::Arc;
 use velour_grammar::Span;
@@ -16,8 +17,8 @@ impl Run<'_> {
         if let Some(&known) = self.s.dictionaries.numbers.get(text) {
             return known;
         }
-        if self.s.dictionaries.numbers.len() >= MOST_DICTIONARIES {
-            let message = format!("a batch reads more than {MOST_DICTIONARIES} dictionaries");
+        if self.s.dictionaries.numbers.len() >= DICTIONARIES {
+            let message = format!("a batch reads more than {DICTIONARIES} dictionaries");
             self.report_once(lane, span, Mistake::Other, message);
             return None;
         }
@@ -49,8 +50,8 @@ impl Run<'_> {
         if lists.len() < self.n {
             lists.resize_with(self.n, Vec::new);
         }
-        if lists[lane].len() >= MOST_FOUND {
-            let message = format!("a point holds more than {MOST_FOUND} nodes of dictionaries");
+        if lists[lane].len() >= FOUND_NODES {
+            let message = format!("a point holds more than {FOUND_NODES} nodes of dictionaries");
             self.report_once(lane, span, Mistake::Other, message);
             return 0;
         }

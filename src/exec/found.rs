@@ -28,12 +28,6 @@ pub(super) struct Found {
     pub at: usize,
 }
 
-/// The most dictionaries that one batch may read.
-pub(super) const MOST_DICTIONARIES: usize = 1024;
-
-/// The most nodes that a shader may hold in a lane.
-pub(super) const MOST_FOUND: usize = 10_000;
-
 impl Dictionaries {
     /// Forgets what the batch before has found.
     pub(super) fn begin(&mut self) {

@@ -64,6 +64,12 @@ pub trait Host: Send + Sync {
         false
     }
 
+    /// Does whoever waits for the batch not want it any more, as when the time is up? Asked now and then while a shader loops; the
+    /// batch then ends without results, see [`super::Machine::given_up`].
+    fn gives_up(&self) -> bool {
+        false
+    }
+
     /// Hears what one batch has said, lane by lane, and may take it; what it leaves waits in the machine for
     /// [`super::Machine::take_reports`]. Not called for a batch that says nothing.
     fn hear(&self, reports: &mut Vec<Report>) {

@@ -27,7 +27,9 @@ impl<'r> Lane<'r> {
 
     /// A string.
     pub fn s(&self, at: usize) -> &'r str {
-        self.run.tree.strings.text(Symbol(self.i(at)))
+        let text = self.run.tree.strings.text(Symbol(self.i(at)));
+        self.run.read.set(self.run.read.get() + text.len() as u64);
+        text
     }
 
     /// Three floats.

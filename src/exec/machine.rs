@@ -8,11 +8,13 @@ use super::registers::Registers;
 use super::report::Report;
 use super::run::{Run, Scratch};
 use crate::closure::tree::Tree;
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Instructions that one batch may run before its shader counts as endless.
-pub const DEFAULT_BUDGET: u64 = 20_000_000;
+/// The work that one batch may do before its shader counts as endless, in simple instructions over a whole batch: a second or two.
+/// What costs more counts for more, by its lanes and by the bytes of its texts.
+pub const DEFAULT_BUDGET: u64 = crate::limits::WORK;
 
 /// Runs shader groups over batches of points.
 pub struct Machine {
@@ -23,7 +25,8 @@ pub struct Machine {
     host: Arc<dyn Host>,
     reports: Vec<Report>,
     scratch: Scratch,
-    /// Instructions a batch may run.
+    given_up: bool,
+    /// The work that a batch may do, by default [`DEFAULT_BUDGET`].
     pub budget: u64,
 }
 
@@ -48,7 +51,16 @@ impl Machine {
     /// A machine whose shaders ask a host.
     pub fn with_host(host: Arc<dyn Host>) -> Self {
         let (files, tree, reports) = (HashMap::new(), Tree::default(), Vec::new());
-        Machine { files, latest: None, tree, host, reports, scratch: Scratch::default(), budget: DEFAULT_BUDGET }
+        Machine {
+            files,
+            latest: None,
+            tree,
+            host,
+            reports,
+            scratch: Scratch::default(),
+            given_up: false,
+            budget: DEFAULT_BUDGET,
+        }
     }
 
     /// Runs a group over points and gives the closure tree of the batch. Its strings and the outputs ([`Machine::output`]) stay
@@ -56,6 +68,7 @@ impl Machine {
     pub fn shade(&mut self, group: &Group, points: &Points) -> &Tree {
         let n = points.len;
         self.tree.clear(n);
+        self.given_up = false;
         if n == 0 {
             return &self.tree;
         }
@@ -83,12 +96,21 @@ impl Machine {
             active: n,
             budget: self.budget,
             stopped: false,
+            ask_below: self.budget.saturating_sub(1),
+            given_up: false,
+            read: Cell::new(0),
         };
         run.s.begin(n, group.program.scopes as usize);
         run.block(&group.program.body);
         run.flush();
+        self.given_up = run.given_up;
         self.tree.root = group.program.result.and_then(|reg| regs.closures[reg.0 as usize]);
         &self.tree
+    }
+
+    /// True when the last batch was left unfinished because the host had given up: its results mean nothing.
+    pub fn given_up(&self) -> bool {
+        self.given_up
     }
 
     /// The tree of the last batch.

@@ -6,10 +6,11 @@
 use super::lane::Lane;
 use super::report::{MessageFault, Mistake};
 use super::run::Run;
-use super::slots::{MOST, MOST_NUMBERS, Slot, State};
+use super::slots::{Slot, State};
 use crate::ir::op::MessageShape;
 use crate::ir::program::{Kind, Reg};
 use crate::lang::symbols::Symbol;
+use crate::limits::{LEFT_MESSAGES, LEFT_NUMBERS};
 use velour_grammar::Span;
 
 impl Run<'_> {
@@ -23,7 +24,7 @@ impl Run<'_> {
         let known = self.s.messages.iter().position(|slot| slot.name == name && slot.shape.as_ref() == Some(shape));
         let numbers = |slot: &Slot| slot.shape.as_ref().map_or(0, |shape| shape.count);
         let held: u32 = self.s.messages.iter().map(numbers).fold(shape.count, u32::saturating_add);
-        if known.is_none() && self.s.messages.len() < MOST && held <= MOST_NUMBERS {
+        if known.is_none() && self.s.messages.len() < LEFT_MESSAGES && held <= LEFT_NUMBERS {
             self.s.messages.push(Slot::new(name, shape, self.n));
             return Some(self.s.messages.len() - 1);
         }

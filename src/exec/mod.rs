@@ -19,10 +19,15 @@
 //! Decision (2026-11-29): the machine knows a group's registers by the program they are of, which it holds weakly, and gives back
 //! those of dropped groups when it meets a new one, because 4,000 groups built, shaded and dropped kept 223 MB; instead of a call
 //! that a host would have to make.
+//!
+//! Decision (2026-11-29): the budget of a batch counts work, not instructions: what costs more than a simple instruction takes more, by
+//! lanes and by bytes of text (`cost`), because 20 million instructions were a third of a second of sums, 17 s of noise, and no
+//! end of formats of 4000 digits; instead of a clock, by which a shader would run on one machine and not on another.
 
 mod arrays;
 mod closures;
 mod code;
+mod cost;
 mod dictionaries;
 mod found;
 mod group;

@@ -53,6 +53,38 @@ impl<'m> OutputView<'m> {
         }
     }
 
+    /// Writes the numbers of as many lanes as there is room for, lane after lane as [`OutputView::lane`] has them; ints as floats, and nothing
+    /// of strings and closures.
+    pub fn copy_numbers(&self, out: &mut [f32]) {
+        match &self.output.value {
+            OutputValue::Regs(regs) => {
+                let kind = |reg: &Reg| self.program.kind(*reg);
+                for (c, reg) in regs.iter().enumerate() {
+                    let to = out.iter_mut().skip(c).step_by(regs.len());
+                    match kind(reg) {
+                        Kind::Float => copy_column(&self.regs.floats[reg.0 as usize], to, |x| x),
+                        Kind::Int => copy_column(&self.regs.ints[reg.0 as usize], to, |x| x as f32),
+                        Kind::String | Kind::Closure => {}
+                    }
+                }
+            }
+            OutputValue::Array(array) => {
+                let at = array.0 as usize;
+                let info = &self.program.arrays[at];
+                let numbers = (info.len * info.components) as usize;
+                for (lane, out) in out.chunks_exact_mut(numbers.max(1)).enumerate() {
+                    match info.kind {
+                        Kind::Float => copy_all(self.elements(info, &self.regs.float_arrays[at], lane), out),
+                        Kind::Int => {
+                            copy_all(self.elements(info, &self.regs.int_arrays[at], lane).map(|x| x as f32), out);
+                        }
+                        Kind::String | Kind::Closure => {}
+                    }
+                }
+            }
+        }
+    }
+
     fn registers(&self, regs: &[Reg], lane: usize) -> Values<'m> {
         let kind = regs.first().map_or(Kind::Float, |&reg| self.program.kind(reg));
         let numbers = regs.iter().map(|reg| reg.0 as usize);
@@ -91,6 +123,18 @@ impl<'m> OutputView<'m> {
         let lanes = if info.uniform { 1 } else { self.regs.lanes };
         columns.chunks(lanes.max(1)).map(move |column| at_lane(column, lane))
     }
+}
+
+/// A column, or the one number of all lanes, to places a lane.
+fn copy_column<'o, T: Copy>(column: &[T], to: impl Iterator<Item = &'o mut f32>, number: impl Fn(T) -> f32) {
+    match column {
+        [one] => to.for_each(|to| *to = number(*one)),
+        _ => to.zip(column).for_each(|(to, x)| *to = number(*x)),
+    }
+}
+
+fn copy_all(from: impl Iterator<Item = f32>, to: &mut [f32]) {
+    to.iter_mut().zip(from).for_each(|(to, x)| *to = x);
 }
 
 /// The number of one lane, or the one of all lanes.

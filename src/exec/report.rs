@@ -152,6 +152,11 @@ impl Report {
         Report { kind: ReportKind::Mistake(Mistake::Other), place: Arc::new(place), lane: 0, text }
     }
 
+    /// A reason to stop that no single lane gives, at a place.
+    pub fn fatal(place: ReportPlace, text: String) -> Self {
+        Report { kind: ReportKind::Fatal, place: Arc::new(place), lane: 0, text }
+    }
+
     /// A warning that no single lane gives, at a place.
     pub fn warning_at(place: ReportPlace, text: String) -> Self {
         Report { kind: ReportKind::Warning, place: Arc::new(place), lane: 0, text }

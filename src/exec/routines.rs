@@ -1,5 +1,6 @@
 //! Routines: work that is more than arithmetic, lane by lane.
 
+use super::cost;
 use super::lane::Lane;
 use super::report::Mistake;
 use super::run::Run;
@@ -13,6 +14,18 @@ use velour_grammar::Span;
 
 impl Run<'_> {
     pub(super) fn call(&mut self, routine: &Routine, dst: &[Reg], src: &[Reg], span: Span) {
+        let made = self.tree.strings.bytes();
+        self.dispatch(routine, dst, src, span);
+        let lanes = dst.first().map_or(self.n, |&first| self.lanes_of(first)).min(self.n) as u64;
+        let texts = self.read.take() + (self.tree.strings.bytes().saturating_sub(made)) as u64;
+        self.charge(cost::of(routine) * lanes / cost::PARTS + texts / cost::BYTES);
+        self.ask_host();
+        if self.budget == 0 {
+            self.fatal(span, "the shader is too costly: the batch has done as much work as it may");
+        }
+    }
+
+    fn dispatch(&mut self, routine: &Routine, dst: &[Reg], src: &[Reg], span: Span) {
         match routine {
             Routine::Noise(noise) => self.noise(*noise, dst, src),
             Routine::Smooth(Smooth::TransformColor) => self.transform_color(dst, src, span),

@@ -11,6 +11,7 @@ use crate::closure::tree::{Keyword, NodeId, Param, Tree};
 use crate::ir::program::Reg;
 use crate::ops::matrix::Matrix;
 use crate::texture::Texture;
+use std::cell::Cell;
 use std::sync::Arc;
 use velour_grammar::Span;
 
@@ -27,8 +28,10 @@ pub(super) struct Scratch {
     pub spare: Vec<Vec<i32>>,
     /// What each lane has printed so far.
     pub texts: Vec<Vec<Report>>,
+    /// How many texts and bytes that is, and how many texts were left out.
+    pub said: Said,
     /// Mistakes that have been reported in this batch.
-    pub said: Vec<(Span, String)>,
+    pub mistakes: Vec<(Span, String)>,
     /// Spaces that the host was asked for in this batch, by symbol.
     pub spaces: Vec<(i32, Option<Matrix>)>,
     /// Ray types that the host was asked for in this batch, by symbol.
@@ -61,6 +64,14 @@ pub(super) struct Scratch {
     pub draws: Vec<u32>,
 }
 
+/// How much a batch has said.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Said {
+    pub texts: usize,
+    pub bytes: usize,
+    pub left_out: u64,
+}
+
 /// One batch under way.
 pub(super) struct Run<'a> {
     pub group: &'a Group,
@@ -75,7 +86,16 @@ pub(super) struct Run<'a> {
     pub budget: u64,
     /// True once the batch has been given up.
     pub stopped: bool,
+    /// The host is asked whether it gives up when the budget has come down to this.
+    pub ask_below: u64,
+    /// True once the host has given up.
+    pub given_up: bool,
+    /// Bytes of strings that routines have read since that was charged.
+    pub read: Cell<u64>,
 }
+
+/// How much of the budget is used between two questions to the host: some 50 microseconds of a whole batch.
+const ASK_EVERY: u64 = 1000;
 
 impl Scratch {
     /// Makes ready for a batch.
@@ -83,7 +103,8 @@ impl Scratch {
         self.mask.clear();
         self.mask.resize(n, 1);
         self.left.resize_with(scopes.max(self.left.len()), Vec::new);
-        self.said.clear();
+        self.mistakes.clear();
+        self.said = Said::default();
         self.spaces.clear();
         self.ray_types.clear();
         self.shared.clear();
@@ -104,6 +125,21 @@ impl Run<'_> {
     /// The lanes a result is computed in: one when all are the same.
     pub fn lanes_of(&self, dst: Reg) -> usize {
         if self.uniform(dst) { 1 } else { self.n }
+    }
+
+    /// Takes from the budget; the unit is a simple instruction over a whole batch, some 50 ns.
+    pub fn charge(&mut self, cost: u64) {
+        self.budget = self.budget.saturating_sub(cost);
+    }
+
+    /// Asks the host now and then whether it still waits for the batch.
+    pub fn ask_host(&mut self) {
+        if self.budget < self.ask_below {
+            self.ask_below = self.budget.saturating_sub(ASK_EVERY);
+            if self.host.gives_up() {
+                (self.given_up, self.stopped) = (true, true);
+            }
+        }
     }
 
     /// Is there nothing to do in a lane? Lanes that are not here may hold anything, which costs time in the slow routines.

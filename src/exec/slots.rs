@@ -5,12 +5,6 @@ use crate::ir::op::MessageShape;
 use crate::ir::program::Kind;
 use velour_grammar::Span;
 
-/// The most messages of different names or types in one batch.
-pub(super) const MOST: usize = 1024;
-
-/// The most numbers that they hold a lane.
-pub(super) const MOST_NUMBERS: u32 = 1 << 16;
-
 /// What is known of a message in one lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum State {

@@ -7,6 +7,7 @@ use crate::closure::print::closure_text;
 use crate::ir::op::{PrintTo, TextArg, TextFormat};
 use crate::ir::program::Reg;
 use crate::lang::symbols::Symbol;
+use crate::limits::{SAID_BYTES, SAID_LENGTH, SAID_TEXTS};
 use crate::ops::format::{Format, FormatArg};
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -43,6 +44,9 @@ impl Values<'_> {
 
 /// What is said of a computed format that its arguments do not fit.
 const MISFIT: &str = "the arguments do not fit this computed format";
+
+/// The most different mistakes that a batch tells of.
+const MOST_MISTAKES: usize = 256;
 
 /// Takes the first `n` off.
 fn cut<'v, T>(values: &mut &'v [T], n: u32) -> &'v [T] {
@@ -102,6 +106,10 @@ impl Run<'_> {
             if self.s.mask[lane] == 0 {
                 continue;
             }
+            if self.s.said.texts >= SAID_TEXTS || self.s.said.bytes >= SAID_BYTES {
+                self.s.said.left_out += 1;
+                continue;
+            }
             let mut text = String::new();
             if !self.text_of(&format, wanted, values, lane, &mut text) {
                 self.report_once(lane, span, Mistake::Other, MISFIT.to_owned());
@@ -137,6 +145,8 @@ impl Run<'_> {
             if !self.text_of(&format, wanted, src, lane, &mut text) {
                 self.report_once(lane, span, Mistake::Other, MISFIT.to_owned());
             }
+            // Numbers of thousands of digits are computed digit by digit.
+            self.read.set(self.read.get() + 4 * text.len() as u64);
             let symbol = self.tree.strings.symbol(&text);
             self.regs.ints[dst.0 as usize][lane] = symbol.0;
         }
@@ -147,13 +157,19 @@ impl Run<'_> {
         Arc::new((self.group.locate)(span))
     }
 
+    /// Is there room for another mistake?
+    pub(super) fn tells_mistakes(&self) -> bool {
+        self.s.mistakes.len() < MOST_MISTAKES
+    }
+
     /// Reports a mistake that shading survives, once a batch, among what its lane prints.
     pub(super) fn report_once(&mut self, lane: usize, span: Span, mistake: Mistake, text: String) {
         let known = (span, text);
-        if !self.s.said.contains(&known) {
+        self.charge(10);
+        if self.tells_mistakes() && !self.s.mistakes.contains(&known) {
             let (kind, place, text) = (ReportKind::Mistake(mistake), self.place(span), known.1.clone());
             self.say(Report { kind, place, lane, text });
-            self.s.said.push(known);
+            self.s.mistakes.push(known);
         }
     }
 
@@ -167,7 +183,16 @@ impl Run<'_> {
     }
 
     /// Keeps a report until the batch ends.
-    fn say(&mut self, report: Report) {
+    fn say(&mut self, mut report: Report) {
+        let length = report.text.len();
+        if length > SAID_LENGTH {
+            let end = (0..=SAID_LENGTH).rev().find(|&end| report.text.is_char_boundary(end)).unwrap_or(0);
+            report.text.truncate(end);
+            report.text += &format!("... and {} bytes more\n", length - end);
+        }
+        self.s.said.texts += 1;
+        self.s.said.bytes += report.text.len();
+        self.read.set(self.read.get() + length as u64);
         if self.s.texts.len() < self.n {
             self.s.texts.resize_with(self.n, Vec::new);
         }
@@ -177,7 +202,13 @@ impl Run<'_> {
     /// Hands over what the lanes have said.
     pub(super) fn flush(&mut self) {
         for lane in &mut self.s.texts {
-            self.reports.append(lane);
+            let room = SAID_TEXTS.saturating_sub(self.reports.len());
+            self.s.said.left_out += lane.len().saturating_sub(room) as u64;
+            self.reports.extend(lane.drain(..).take(room));
+        }
+        if self.s.said.left_out > 0 {
+            let text = format!("a batch says more than is kept: {} texts are left out", self.s.said.left_out);
+            self.reports.push(Report::warning(text));
         }
         if !self.reports.is_empty() {
             self.host.hear(self.reports);

@@ -3,6 +3,7 @@
 use super::fold;
 use super::op::*;
 use super::program::*;
+use crate::limits::{INSTRUCTIONS, NUMBERS};
 use std::collections::HashMap;
 
 /// What makes two instructions compute the same value.
@@ -29,6 +30,7 @@ pub struct Builder {
     constants: HashMap<(Kind, u32), Reg>,
     inputs: HashMap<Input, Reg>,
     simplify: bool,
+    nodes: usize,
 }
 
 impl std::fmt::Debug for Builder {
@@ -47,20 +49,32 @@ impl Builder {
             constants: HashMap::new(),
             inputs: HashMap::new(),
             simplify,
+            nodes: 0,
         }
     }
 
     /// The program, with the code appended so far.
     pub fn finish(mut self) -> Program {
         self.program.body = self.blocks.pop().unwrap_or_default();
+        if self.is_full() {
+            // What is left of it is not what was written; this is what `verify` refuses.
+            self.program.body = Block::new();
+            self.array(Kind::Float, NUMBERS as u32 + 1, 1);
+        }
         self.program
     }
 
     /// Appends to the innermost open block.
     pub fn push(&mut self, node: Node) {
         if let Some(block) = self.blocks.last_mut() {
+            self.nodes += 1;
             block.push(node);
         }
+    }
+
+    /// Is the program so long that it will be refused, see [`crate::limits::INSTRUCTIONS`]? Nothing more need be added.
+    pub fn is_full(&self) -> bool {
+        self.nodes > INSTRUCTIONS
     }
 
     /// Appends an instruction.

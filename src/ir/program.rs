@@ -7,6 +7,7 @@
 
 use super::op::*;
 use crate::lang::closures::ClosureId;
+use crate::lang::symbols::Symbol;
 use crate::lang::types::Type;
 use crate::ops::working_space::WorkingSpace;
 use velour_grammar::Span;
@@ -237,6 +238,8 @@ pub struct Program {
     pub outputs: Vec<Output>,
     /// What RGB means.
     pub working_space: WorkingSpace,
+    /// Instructions there were before the optimizer; 0 in a program it has not seen.
+    pub lowered: usize,
 }
 
 impl Program {
@@ -246,6 +249,14 @@ impl Program {
             own == name || name.strip_prefix(layer).is_some_and(|rest| rest.strip_prefix('.') == Some(own))
         };
         self.outputs.iter().rev().find(|output| named(&output.layer, &output.name))
+    }
+
+    /// The texts among its constants, in the order of registers.
+    pub fn texts(&self) -> impl Iterator<Item = &'static str> {
+        self.regs.iter().filter_map(|info| match info.source {
+            Source::Const(Const::String(number)) => Some(Symbol(number).text()),
+            Source::Const(_) | Source::Input(_) | Source::Code => None,
+        })
     }
 
     /// How many instructions there are, whether or not they run.

@@ -6,8 +6,8 @@
 //! what is written. Functions that the standard header defines in OSL are not here.
 
 use super::types::{Base, Length, Type};
-use std::collections::HashMap;
 use std::sync::LazyLock;
+use velour_grammar::names::NameMap;
 
 const TABLE: &str = "
 {f} cos({f}); {f} sin({f}); {f} tan({f}); {f} acos({f}); {f} asin({f}); {f} atan({f}); {f} atan2({f}, {f})
@@ -102,8 +102,8 @@ pub struct Signature {
     pub options: bool,
 }
 
-static SIGNATURES: LazyLock<HashMap<&'static str, Vec<Signature>>> = LazyLock::new(|| {
-    let mut map: HashMap<&'static str, Vec<Signature>> = HashMap::new();
+static SIGNATURES: LazyLock<NameMap<&'static str, Vec<Signature>>> = LazyLock::new(|| {
+    let mut map: NameMap<&'static str, Vec<Signature>> = NameMap::default();
     let lines = TABLE.lines().flat_map(|line| line.split(';'));
     for text in lines.map(str::trim).filter(|text| !text.is_empty()) {
         for expanded in expand(text) {

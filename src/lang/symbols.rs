@@ -7,6 +7,7 @@
 //! because a shader that formats its position makes millions of them, which the global table kept for ever (283 MB for a small
 //! picture) behind one lock for all threads; instead of counting references to each.
 
+use crate::limits::TEXT_BYTES;
 use std::collections::HashMap;
 use std::fmt;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -70,9 +71,6 @@ impl fmt::Debug for Symbol {
     }
 }
 
-/// How many bytes the strings of one batch may have together, 64 MB.
-pub const MOST_BYTES: usize = 1 << 26;
-
 /// The strings that shaders made in one batch. Their symbols are below zero and mean nothing after [`Strings::clear`].
 #[derive(Clone, Debug, Default)]
 pub struct Strings {
@@ -105,12 +103,17 @@ impl Strings {
         self.ends.len()
     }
 
+    /// How many bytes they have together.
+    pub fn bytes(&self) -> usize {
+        self.bytes.len()
+    }
+
     /// True when nothing was made yet.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// True once a string did not fit into [`MOST_BYTES`]; it counts as empty.
+    /// True once a string did not fit into [`TEXT_BYTES`]; it counts as empty.
     pub fn is_full(&self) -> bool {
         self.full
     }
@@ -126,7 +129,7 @@ impl Strings {
         if let Some(known) = Symbol::find(text) {
             return known;
         }
-        if self.bytes.len() + text.len() > MOST_BYTES {
+        if self.bytes.len() + text.len() > TEXT_BYTES {
             self.full = true;
             return Symbol(0);
         }
@@ -244,13 +247,13 @@ mod tests {
     #[test]
     fn a_batch_has_room_for_so_much_text() {
         let mut strings = Strings::default();
-        let long = "x".repeat(MOST_BYTES - 10);
+        let long = "x".repeat(TEXT_BYTES - 10);
         let symbol = strings.symbol(&long);
         assert_eq!(strings.text(symbol).len(), long.len());
         assert_eq!((strings.symbol("eleven bytes"), strings.is_full()), (Symbol(0), true));
         assert!(strings.symbol("ten bytes.").0 < 0);
         strings.clear();
-        assert!(!strings.is_full() && strings.bytes.capacity() <= 2 * MOST_BYTES);
+        assert!(!strings.is_full() && strings.bytes.capacity() <= 2 * TEXT_BYTES);
         strings.clear();
         assert!(strings.bytes.capacity() <= 1 << 20);
     }

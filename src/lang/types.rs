@@ -162,6 +162,22 @@ impl Type {
         }
     }
 
+    /// How many numbers or texts a value has at one point, as far as a limit; arrays of unknown length have none.
+    pub fn numbers(&self, most: u64) -> u64 {
+        let one = match &self.element {
+            Element::Base(base) => base.components() as u64,
+            Element::Struct(structure) => structure
+                .fields
+                .iter()
+                .try_fold(0u64, |sum, (_, ty)| {
+                    let sum = sum.saturating_add(ty.numbers(most));
+                    if sum > most { Err(sum) } else { Ok(sum) }
+                })
+                .unwrap_or_else(|sum| sum),
+        };
+        one.saturating_mul(self.count() as u64)
+    }
+
     /// The type with its article: `an int`, `a float[3]`.
     pub fn named(&self) -> String {
         let article = if self.element == Element::Base(Base::Int) { "an" } else { "a" };

@@ -1,9 +1,10 @@
 //! Regular expressions: `regex_search` and `regex_match`.
 //!
 //! Patterns are those of the `fancy-regex` crate, which has back-references and looks ahead and behind; one that would take more than
-//! a million steps of going back matches nothing, and neither does one that is malformed, which [`flaw`] tells.
+//! a hundred thousand steps of going back matches nothing, and neither does one that is malformed, which [`flaw`] tells.
 
-use fancy_regex::{Captures, Regex};
+use crate::limits::PATTERN_STEPS;
+use fancy_regex::{Captures, Regex, RegexBuilder};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -46,7 +47,11 @@ fn with_compiled<T>(expression: &str, work: impl FnOnce(&Result<Regex, String>) 
         if compiled.len() >= REMEMBERED && !compiled.contains_key(expression) {
             compiled.clear();
         }
-        let compile = || Regex::new(expression).map_err(|error| error.to_string());
+        let compile = || {
+            let builder =
+                RegexBuilder::new(expression).backtrack_limit(PATTERN_STEPS).delegate_size_limit(1 << 20).build();
+            builder.map_err(|error| error.to_string())
+        };
         work(compiled.entry(expression.to_owned()).or_insert_with(compile))
     })
 }

@@ -33,6 +33,7 @@ impl Default for OptimizeOptions {
 /// Prepares a lowered program, which calls the closures of a table, for the machine. In debug builds each pass is held to what a program promises.
 pub fn optimize(mut program: Program, table: &ClosureTable, options: OptimizeOptions) -> Program {
     debug_verify(&program, table);
+    program.lowered = program.instructions();
     if options.dead_code {
         dead::remove(&mut program);
         debug_verify(&program, table);

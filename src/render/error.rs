@@ -23,6 +23,8 @@ pub enum SettingsError {
     Seconds,
     /// R0105: tiles, waves or batches of nothing.
     Batches,
+    /// R0106: a render that stops by noise or time and does not begin with its first sample.
+    First,
 }
 
 /// What keeps a scene from being rendered.
@@ -49,6 +51,8 @@ pub enum RenderError {
     },
     /// The threads could not be started, for this reason.
     Threads(String),
+    /// The time was up before the picture had a first sample.
+    Late,
     /// A thread has failed, which is a mistake in this crate.
     ThreadFailed,
     /// A shader cannot be run, for this reason, which begins with a place where there is one.
@@ -70,6 +74,7 @@ impl fmt::Display for RenderError {
             ),
             RenderError::Threads(reason) => write!(f, "the threads could not be started: {reason}"),
             RenderError::ThreadFailed => f.write_str("a thread has failed"),
+            RenderError::Late => f.write_str("the time was up before the picture had a first sample"),
         }
     }
 }
@@ -83,6 +88,7 @@ impl std::error::Error for RenderError {
             | RenderError::Material { .. }
             | RenderError::Threads(_)
             | RenderError::ThreadFailed
+            | RenderError::Late
             | RenderError::Shader(_) => None,
         }
     }
@@ -97,6 +103,7 @@ impl SettingsError {
             SettingsError::Noise => "R0103",
             SettingsError::Seconds => "R0104",
             SettingsError::Batches => "R0105",
+            SettingsError::First => "R0106",
         }
     }
 }
@@ -107,10 +114,13 @@ impl fmt::Display for SettingsError {
             SettingsError::Size { width, height } => {
                 write!(f, "an image of {width} x {height} pixels cannot be rendered")
             }
-            SettingsError::NoSamples => f.write_str("at least one sample a pixel is needed"),
+            SettingsError::NoSamples => {
+                f.write_str("at least one sample a pixel is needed, and the last one must come after the first")
+            }
             SettingsError::Noise => f.write_str("the noise to stop at must be a number above 0, such as 0.01"),
             SettingsError::Seconds => f.write_str("the time to stop at must be a number of seconds above 0"),
             SettingsError::Batches => f.write_str("tile size, wave size and batch width must be above 0"),
+            SettingsError::First => f.write_str("a render that stops by noise or time begins with sample 0"),
         }
     }
 }

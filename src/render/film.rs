@@ -5,22 +5,17 @@
 //! pixel hears 2.25 times as many samples: the mean square error of `shaders/scenes/spheres.xml` (320 x 128, 64
 //! samples, half the mean square difference of three seeds) falls from 1.32e-5 to 6.9e-6. Neighbours then share noise, as in every renderer that splats.
 //!
-//! A tile's sums are taken by the thread that renders it and given back, and every sum adds up sample after sample, within
-//! one sample pixel after pixel. Tiles overlap by a rim of one pixel; the rims are added in the order of the tiles when a
-//! picture is made. So neither threads nor waves nor rounds show, and the size of a tile shows only where a sum of doubles
-//! rounds to another single.
+//! A tile's sums are taken by the thread that renders it and given back. They are exact (see `exact`), so that neither threads nor
+//! waves, rounds, tiles or the order of samples show. Tiles overlap by a rim of one pixel, which is added when a picture is made.
 //!
-//! Decision (2026-11-29): sums go on where the last round has left them, in the order of samples, instead of each round
-//! making sums of its own that the film adds up, because then a picture of many rounds is that of one to the last bit;
-//! a tile's sums (13 kB at 16 x 16 pixels) also stay in the nearest cache, where sums kept apart by source pixel did not.
+//! Decision (2026-11-29): a tile's sums (13 kB at 16 x 16 pixels) are kept together, because they stay in the nearest cache, where
+//! sums kept apart by source pixel did not.
 
+use super::exact::{self, PARTS, Sums};
 use super::settings::{HALVES, Settings};
 use super::tile::Tile;
 
-/// Red, green, blue, alpha and weight.
-const PARTS: usize = 5;
-
-/// Which of them is alpha.
+/// Which part of a sum is alpha.
 const ALPHA: usize = 3;
 
 /// What a tile has gathered in each half: sums over its pixels and a rim of one.
@@ -34,7 +29,7 @@ pub struct TileSums {
 /// The sums of one half, row by row, and how many samples each pixel has had.
 #[derive(Clone, Debug, Default)]
 struct HalfSums {
-    sums: Vec<[f64; PARTS]>,
+    sums: Sums,
     samples: u32,
 }
 
@@ -43,39 +38,33 @@ impl TileSums {
     pub fn open(&mut self, tile: &Tile, halves: usize) {
         let (across, down) = (tile.width as usize + 2, tile.height as usize + 2);
         self.across = across;
-        for half in &mut self.halves[..halves] {
-            half.sums.resize(across * down, [0.0; PARTS]);
-        }
+        self.halves[..halves].iter_mut().for_each(|half| half.sums.open(across * down));
     }
 
     /// Adds a sample of the tile's pixel (`x`, `y`) that lies at `position` in it, both coordinates in [0, 1].
     #[inline]
     pub fn add(&mut self, half: usize, [x, y]: [u32; 2], position: [f32; 2], light: [f32; 3], alpha: f32) {
-        let light = [light[0], light[1], light[2], alpha, 1.0].map(f64::from);
-        let ((column, across), (row, down)) = (taps(position[0]), taps(position[1]));
+        let ((column, columns), (row, rows)) = (taps(position[0]), taps(position[1]));
         // Pixel (0, 0) is at (1, 1) of the sums, and tap 1 is the pixel itself.
         let first = (y as usize + row) * self.across + x as usize + column;
-        let sums = &mut self.halves[half].sums;
-        for (wy, start) in down.into_iter().zip([first, first + self.across]) {
-            for (wx, sum) in across.into_iter().zip(&mut sums[start..start + 2]) {
-                (0..PARTS).for_each(|k| sum[k] += wx * wy * light[k]);
-            }
-        }
+        self.halves[half].sums.splat(first, self.across, columns, rows, light, alpha);
     }
 
     /// Puts all there is into the first half, so that the second is empty.
     pub fn join(&mut self) {
         let [first, second] = &mut self.halves;
-        for (sum, more) in first.sums.iter_mut().zip(&mut second.sums) {
-            (0..PARTS).for_each(|k| sum[k] += more[k]);
-            *more = [0.0; PARTS];
-        }
+        first.sums.drain(&mut second.sums);
         first.samples += std::mem::take(&mut second.samples);
+        first.sums.settle();
     }
 
     /// Notes that each pixel has had one sample more.
     pub fn count(&mut self, half: usize) {
-        self.halves[half].samples += 1;
+        let half = &mut self.halves[half];
+        half.samples += 1;
+        if half.samples.is_multiple_of(exact::SETTLE) {
+            half.sums.settle();
+        }
     }
 }
 
@@ -91,17 +80,34 @@ fn limited(x: f64) -> f32 {
     x.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }
 
+/// The first `channels` numbers of a pixel of these sums, 3 or 4.
+pub fn means(sum: [f64; PARTS], channels: usize) -> impl Iterator<Item = f32> {
+    let mean = move |k: usize| match if sum[4] > 0.0 { limited(sum[k] / sum[4]) } else { 0.0 } {
+        // A clear surface that amplifies makes a sample's share negative.
+        alpha if k == ALPHA => alpha.clamp(0.0, 1.0),
+        light => light,
+    };
+    (0..channels).map(mean)
+}
+
 /// What all tiles have gathered: some 50 bytes a pixel, twice that when there are halves, and as much again while a
 /// picture is made of it.
 #[derive(Debug)]
 pub struct Film {
     tiles: Vec<TileSums>,
+    /// Sums over the pixels of samples that were made elsewhere.
+    kept: Option<Sums>,
 }
 
 impl Film {
     /// An empty film.
     pub fn new(settings: &Settings) -> Self {
-        Film { tiles: vec![TileSums::default(); Tile::count(settings)] }
+        Film { tiles: vec![TileSums::default(); Tile::count(settings)], kept: None }
+    }
+
+    /// Adds to all pictures what was made elsewhere, in place of what this was told before.
+    pub fn keep(&mut self, sums: Sums) {
+        self.kept = Some(sums);
     }
 
     /// Hands out the sums of tile `number`, to be given back with more in them.
@@ -115,10 +121,43 @@ impl Film {
     }
 
     /// The picture of the samples of `halves`, `channels` numbers a pixel; black where there are none.
-    ///
-    /// A tile's sums count by its samples a pixel: where two tiles meet that have had unlike numbers of them, each still
-    /// gives a pixel the share that the tent gives to its side.
     pub fn picture(&self, settings: &Settings, halves: std::ops::Range<usize>, channels: usize) -> Vec<f32> {
+        let samples = |tile: &TileSums| tile.halves[halves.clone()].iter().map(|half| half.samples).sum::<u32>();
+        let first = self.tiles.first().map_or(0, samples);
+        if self.kept.is_some() || self.tiles.iter().all(|tile| samples(tile) == first) {
+            let sums = self.sums(settings, halves);
+            (0..settings.width as usize * settings.height as usize)
+                .flat_map(|i| means(sums.value(i), channels))
+                .collect()
+        } else {
+            self.shares(settings, halves).into_iter().flat_map(|sum| means(sum, channels)).collect()
+        }
+    }
+
+    /// The exact sums of `halves` over the pixels of the picture.
+    pub fn sums(&self, settings: &Settings, halves: std::ops::Range<usize>) -> Sums {
+        let (width, height) = (settings.width as usize, settings.height as usize);
+        let mut sums = self.kept.clone().unwrap_or_default();
+        sums.open(width * height);
+        for (number, tile_sums) in self.tiles.iter().enumerate() {
+            let tile = Tile::number(settings, number);
+            let (x, y) = (tile.x as usize, tile.y as usize);
+            let (across, down) = (tile.width as usize + 2, tile.height as usize + 2);
+            // The rim may lie outside the picture; nobody looks there.
+            let columns = usize::from(x == 0)..across.min(width + 1 - x);
+            for half in &tile_sums.halves[halves.clone()] {
+                for row in usize::from(y == 0)..down.min(height + 1 - y) {
+                    let from = row * across + columns.start..row * across + columns.end;
+                    sums.add_some((y + row - 1) * width + x + columns.start - 1, &half.sums, from);
+                }
+            }
+        }
+        sums
+    }
+
+    /// The same where tiles have had unlike numbers of samples: a tile's sums count by its samples a pixel, so that where two meet
+    /// each still gives a pixel the share that the tent gives to its side.
+    fn shares(&self, settings: &Settings, halves: std::ops::Range<usize>) -> Vec<[f64; PARTS]> {
         let (width, height) = (settings.width as usize, settings.height as usize);
         let mut sums = vec![[0.0f64; PARTS]; width * height];
         for (number, tile_sums) in self.tiles.iter().enumerate() {
@@ -127,21 +166,15 @@ impl Film {
             let halves = &tile_sums.halves[halves.clone()];
             let samples: f64 = halves.iter().map(|half| f64::from(half.samples)).sum();
             let share = 1.0 / samples.max(1.0);
-            for sum in halves.iter().flat_map(|half| half.sums.iter().enumerate()) {
-                let (x, y) = (tile.x as usize + sum.0 % rim, tile.y as usize + sum.0 / rim);
-                // The rim may lie outside the picture; nobody looks there.
+            for (half, i) in halves.iter().flat_map(|half| (0..half.sums.len()).map(move |i| (half, i))) {
+                let (x, y) = (tile.x as usize + i % rim, tile.y as usize + i / rim);
                 if (1..=width).contains(&x) && (1..=height).contains(&y) {
                     let pixel = &mut sums[(y - 1) * width + x - 1];
-                    (0..PARTS).for_each(|k| pixel[k] += share * sum.1[k]);
+                    half.sums.value(i).iter().zip(pixel).for_each(|(sum, pixel)| *pixel += share * sum);
                 }
             }
         }
-        let mean = |sum: &[f64; PARTS], k: usize| match if sum[4] > 0.0 { limited(sum[k] / sum[4]) } else { 0.0 } {
-            // A clear surface that amplifies makes a sample's share negative.
-            alpha if k == ALPHA => alpha.clamp(0.0, 1.0),
-            light => light,
-        };
-        sums.iter().flat_map(|sum| (0..channels).map(move |k| mean(sum, k))).collect()
+        sums
     }
 
     /// The mean square error of each tile's pixels, from the difference of the two halves: a quarter of its square where they have

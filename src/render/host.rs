@@ -2,6 +2,7 @@
 
 use super::accel::{Accel, Ray};
 use super::settings::Settings;
+use super::stop::Stop;
 use crate::exec::{Attribute, AttributeAnswer, AttributeRequest, Host, PlainHost, Points, TraceRequest};
 use crate::math::elementary::tan;
 use crate::ops::matrix::{IDENTITY, Matrix, inverse, multiply};
@@ -40,7 +41,7 @@ pub fn host(
     host.spaces.extend(spaces.map(|(name, matrix)| (name.to_owned(), matrix)));
     let attributes = camera_attributes([settings.width, settings.height], camera.fov, CLIP, [0.0; 2]);
     host.attributes.extend(attributes);
-    RenderHost { plain: host, textures: textures.clone(), accel }
+    RenderHost { plain: host, textures: textures.clone(), accel, stop: None }
 }
 
 /// What shaders of a scene may ask for: tables of spaces and attributes, what each point carries, and the scene's textures.
@@ -48,9 +49,21 @@ pub struct RenderHost {
     plain: PlainHost,
     textures: Arc<TextureFiles>,
     accel: Option<Arc<Accel>>,
+    stop: Option<Arc<Stop>>,
+}
+
+impl RenderHost {
+    /// The same, which gives up when `stop` says so.
+    pub fn until(self, stop: &Arc<Stop>) -> Self {
+        RenderHost { stop: Some(stop.clone()), ..self }
+    }
 }
 
 impl Host for RenderHost {
+    fn gives_up(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.now())
+    }
+
     fn space(&self, name: &str, points: &Points) -> Option<Matrix> {
         self.plain.space(name, points)
     }

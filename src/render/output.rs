@@ -1,12 +1,12 @@
-//! Image files: EXR, PNG and HDR, written under a temporary name and then renamed, so that no half file is ever seen.
+//! Image files: EXR, PNG and HDR.
 
 use super::error::OutputError;
 use super::image::Image;
+use crate::files::{Destination, Sink};
 use crate::math::elementary::pow;
 use exr::prelude as exr;
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 
 /// The kinds of files that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,15 +20,42 @@ pub enum Format {
     Hdr,
 }
 
-/// Says, before anything is rendered, whether a file of this name can be written.
+/// Says, before anything is rendered, whether a file of this name can be written. `-`, standard output, is an EXR; `png:-` and
+/// `hdr:-` say otherwise.
 pub fn check(path: &Path) -> Result<Format, OutputError> {
+    look(path).map(|(format, _)| format)
+}
+
+/// Writes `image` to `path` in the format of its extension.
+pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
+    let format = check(path)?;
+    write_with(path, |sink| match format {
+        Format::Exr => write_exr(image, sink),
+        Format::Png => write_png(image, sink),
+        Format::Hdr => write_hdr(image, sink),
+    })
+}
+
+/// Writes what `encode` makes to `path`.
+pub(super) fn write_with(path: &Path, encode: impl FnOnce(&mut Sink) -> Result<(), String>) -> Result<(), OutputError> {
+    let (_, destination) = look(path)?;
+    let written = destination.write(|sink| encode(sink).map_err(std::io::Error::other));
+    written.map_err(|error| unwritable(path, error.to_string()))
+}
+
+/// Does a picture of this name go to standard output?
+pub fn is_standard_output(path: &Path) -> bool {
+    standard_format(path).is_some()
+}
+
+/// The format and the destination of a name.
+fn look(path: &Path) -> Result<(Format, Destination), OutputError> {
+    if let Some(format) = standard_format(path) {
+        return Ok((format, at(Path::new("-"))?));
+    }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let format = match extension.as_str() {
-        "exr" => Format::Exr,
-        "png" => Format::Png,
-        "hdr" => Format::Hdr,
-        _ => return Err(OutputError::UnknownFormat { path: path.to_owned() }),
-    };
+    let unknown = || OutputError::UnknownFormat { path: path.to_owned() };
+    let format = format_named(&extension).ok_or_else(unknown)?;
     let folder = folder_of(path);
     if !folder.is_dir() {
         return Err(OutputError::NoFolder { folder: folder.to_owned() });
@@ -36,27 +63,28 @@ pub fn check(path: &Path) -> Result<Format, OutputError> {
     if path.is_dir() {
         return Err(OutputError::IsFolder { path: path.to_owned() });
     }
-    // Permissions, full disks and odd file systems are best found out by trying.
-    let temporary = temporary_name(path);
-    let tried = File::create(&temporary).map_err(|e| unwritable(path, e.to_string()));
-    if tried.is_ok() {
-        // What cannot be removed now is written over, and then renamed, by the image.
-        let _ = std::fs::remove_file(&temporary);
-    }
-    tried.map(|_| format)
+    Ok((format, at(path)?))
 }
 
-/// Writes `image` to `path` in the format of its extension.
-pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
-    let format = check(path)?;
-    let temporary = temporary_name(path);
-    let written =
-        write_to(image, format, &temporary).and_then(|()| std::fs::rename(&temporary, path).map_err(|e| e.to_string()));
-    written.map_err(|e| {
-        // A failure to remove is not worth hiding the first failure for.
-        let _ = std::fs::remove_file(&temporary);
-        unwritable(path, e)
-    })
+fn at(path: &Path) -> Result<Destination, OutputError> {
+    Destination::at(path).map_err(|error| unwritable(path, error.to_string()))
+}
+
+fn format_named(name: &str) -> Option<Format> {
+    match name {
+        "exr" => Some(Format::Exr),
+        "png" => Some(Format::Png),
+        "hdr" => Some(Format::Hdr),
+        _ => None,
+    }
+}
+
+/// The format of a name that means standard output.
+fn standard_format(path: &Path) -> Option<Format> {
+    match path.to_str()?.strip_suffix('-')? {
+        "" => Some(Format::Exr),
+        named => format_named(named.strip_suffix(':')?),
+    }
 }
 
 fn unwritable(path: &Path, reason: String) -> OutputError {
@@ -70,34 +98,12 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// A name beside the file's own, so that the renaming stays on one disk; with the process, so that two renders of one
-/// name do not meet.
-fn temporary_name(path: &Path) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    folder_of(path).join(format!(".{name}.{}.part", std::process::id()))
-}
-
-fn write_to(image: &Image, format: Format, path: &Path) -> Result<(), String> {
-    let file = File::create(path).map_err(|e| e.to_string())?;
-    let mut writer = BufWriter::new(file);
-    match format {
-        Format::Exr => write_exr(image, &mut writer)?,
-        Format::Png => write_png(image, &mut writer)?,
-        Format::Hdr => write_hdr(image, &mut writer)?,
-    }
-    writer.flush().map_err(|e| e.to_string())
-}
-
 fn write_exr(image: &Image, writer: &mut (impl Write + std::io::Seek)) -> Result<(), String> {
     use exr::WritableImage;
     let size = exr::Vec2(image.width as usize, image.height as usize);
     let at = |p: exr::Vec2<usize>| image.pixel(p.0 as u32, p.1 as u32);
-    let attributes = exr::LayerAttributes {
-        software_name: Some(exr::Text::from(format!("velour {}", env!("CARGO_PKG_VERSION")).as_str())),
-        comments: Some(exr::Text::from(note(image).as_str())),
-        ..exr::LayerAttributes::default()
-    };
-    let encoding = exr::Encoding::FAST_LOSSLESS;
+    let attributes = layer_attributes(image, "");
+    let encoding = ENCODING;
     if image.channels == 4 {
         let channels = exr::SpecificChannels::rgba(|p| {
             let c = at(p);
@@ -114,6 +120,20 @@ fn write_exr(image: &Image, writer: &mut (impl Write + std::io::Seek)) -> Result
         exr::Image::from_layer(layer).write().to_buffered(writer)
     }
     .map_err(|e| e.to_string())
+}
+
+/// Without loss and fast; in the order of lines, or the bytes of a file would depend on which thread has compressed its lines first.
+pub(super) const ENCODING: exr::Encoding =
+    exr::Encoding { line_order: exr::LineOrder::Increasing, ..exr::Encoding::FAST_LOSSLESS };
+
+/// The header of a layer that holds the picture; an only layer needs no name.
+pub(super) fn layer_attributes(image: &Image, name: &str) -> exr::LayerAttributes {
+    exr::LayerAttributes {
+        layer_name: Some(name).filter(|name| !name.is_empty()).map(exr::Text::from),
+        software_name: Some(exr::Text::from(format!("velour {}", env!("CARGO_PKG_VERSION")).as_str())),
+        comments: Some(exr::Text::from(note(image).as_str())),
+        ..exr::LayerAttributes::default()
+    }
 }
 
 /// What the header says of the picture.

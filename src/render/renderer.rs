@@ -5,12 +5,14 @@ use super::displace::displaced;
 use super::error::RenderError;
 use super::film::Film;
 use super::image::{About, Image};
+use super::part::{Part, PartError, Whole, fingerprint};
 use super::path::Dropped;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::rounds::{Rounds, Task};
 use super::settings::Settings;
 use super::sky::Sky;
+use super::stop::Stop;
 use super::tile::Tile;
 use super::trace::render_tile;
 use super::wave::Wave;
@@ -18,8 +20,8 @@ use super::world::World;
 use crate::exec::{Group, Report, ReportPlace};
 use crate::scene::{Camera, Scene};
 use std::fmt;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 /// A scene that is being rendered.
@@ -61,6 +63,8 @@ pub struct Renderer {
     /// What shaders said when surfaces were moved.
     said_moving: Vec<Report>,
     seconds_preparing: f64,
+    /// What stands for the scene in the files of parts, once it was asked for.
+    fingerprint: OnceLock<u64>,
 }
 
 /// What the threads put together.
@@ -94,6 +98,12 @@ impl Gathered {
         self.reports.extend(wave.shading.take_reports());
     }
 
+    /// Is there anything at all when the time is up?
+    fn check_time(&self) -> Result<(), RenderError> {
+        let nothing = self.rounds.late() && self.rounds.taken().all(|samples| samples == 0);
+        if nothing { Err(RenderError::Late) } else { Ok(()) }
+    }
+
     /// The first report that a shader cannot be run.
     fn check(&self) -> Result<(), RenderError> {
         let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
@@ -114,10 +124,12 @@ impl Renderer {
         settings.check().map_err(RenderError::Settings)?;
         check_camera(&scene.camera)?;
         let pool = pool(settings)?;
+        let stop = Arc::new(Stop::new(Arc::default()));
+        stop.begin(settings, start);
         let make = || {
-            let (scene, reports) = displaced(scene, settings)?;
+            let (scene, reports) = displaced(scene, settings, &stop)?;
             let accel = Arc::new(Accel::new(&scene.geometry));
-            let mut world = World::new(accel, scene, settings.clone(), None);
+            let mut world = World::new(accel, scene, settings.clone(), None, stop.clone());
             world.reports.extend(reports.iter().cloned());
             Ok((world, reports))
         };
@@ -127,6 +139,7 @@ impl Renderer {
             gathered: Mutex::new(Gathered::new(&world, start)),
             said_moving,
             seconds_preparing: start.elapsed().as_secs_f64(),
+            fingerprint: OnceLock::new(),
             world,
             pool,
         })
@@ -156,6 +169,12 @@ impl Renderer {
         &self.world.accel
     }
 
+    /// Ends the round that is running, and all that follow, once it is set: from another thread, or by a signal. What is unfinished
+    /// in the middle of a shader is left out.
+    pub fn stop(&self) -> &Arc<AtomicBool> {
+        self.world.stop.asked()
+    }
+
     /// Renders the next round; true says that something is left to do, also when `progress` has stopped the round.
     ///
     /// A render of a fixed number of samples is one round. One that stops by noise or time has as many as it takes.
@@ -170,18 +189,20 @@ impl Renderer {
     pub fn round_of(&mut self, samples: u32, progress: &dyn Progress) -> Result<bool, RenderError> {
         let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         gathered.check()?;
+        gathered.check_time()?;
         let tasks = gathered.rounds.next(&self.world.settings, samples);
         let start = Instant::now();
         self.trace(&tasks, progress);
         let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         gathered.seconds_tracing += start.elapsed().as_secs_f64();
         gathered.check()?;
+        gathered.check_time()?;
         Ok(gathered.rounds.look(&self.world.settings, &gathered.film))
     }
 
     /// Renders round after round until nothing is left to do or `progress` asks to stop.
     pub fn finish(&mut self, progress: &dyn Progress) -> Result<(), RenderError> {
-        while self.round(progress)? && !progress.cancelled() {}
+        while self.round(progress)? && !progress.cancelled() && !self.world.stop.now() {}
         Ok(())
     }
 
@@ -189,19 +210,19 @@ impl Renderer {
     fn trace(&self, tasks: &[Task], progress: &dyn Progress) {
         let Renderer { world, waves, gathered, .. } = self;
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let stop = || next.store(tasks.len(), Ordering::Relaxed);
+        let stop = || world.stop.now() || progress.cancelled();
         self.pool.broadcast(|thread| {
             let Ok(mut wave) = waves[thread.index()].lock() else { return };
             let wave = wave.get_or_insert_with(|| Wave::new(world));
-            while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !progress.cancelled()) {
+            while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop()) {
                 let tile = Tile::number(&world.settings, task.tile);
                 let Ok(mut sums) = gathered.lock().map(|mut all| all.film.take(task.tile)) else { return };
-                render_tile(world, wave, &tile, task.first..task.end, &mut sums);
+                let end = render_tile(world, wave, &tile, task.first..task.end, &mut sums, &stop);
                 let Ok(mut all) = gathered.lock() else { return };
                 all.film.give(task.tile, sums);
-                all.keep(task, wave);
-                if all.rounds.late() || wave.shading.failed() {
-                    stop();
+                all.keep(&Task { end, ..*task }, wave);
+                if wave.shading.failed() {
+                    next.store(tasks.len(), Ordering::Relaxed);
                 }
                 drop(all);
                 progress.tiles(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
@@ -221,21 +242,75 @@ impl Renderer {
     /// What is known of the picture so far.
     fn about(&self, all: &Gathered) -> About {
         let settings = &self.world.settings;
-        let taken = all.rounds.taken();
+        let taken = || all.rounds.taken();
         let paths =
-            |(number, samples): (usize, &u32)| u64::from(Tile::number(settings, number).pixels()) * u64::from(*samples);
+            |(number, samples): (usize, u32)| u64::from(Tile::number(settings, number).pixels()) * u64::from(samples);
         About {
             scene: self.world.scene.name.clone(),
             samples: settings.samples,
-            taken: [taken.iter().copied().min().unwrap_or(0), taken.iter().copied().max().unwrap_or(0)],
+            taken: [taken().min().unwrap_or(0), taken().max().unwrap_or(0)],
             noise: all.rounds.noise().filter(|_| settings.adapts()),
             seed: settings.seed,
-            paths: taken.iter().enumerate().map(paths).sum(),
+            paths: taken().enumerate().map(paths).sum(),
             rays: all.rays,
             seconds_preparing: self.seconds_preparing,
             seconds_tracing: all.seconds_tracing,
-            reports: reports(&self.world.scene, all.reports.clone(), &all.dropped),
+            reports: self.reports(all),
         }
+    }
+
+    /// The samples so far, to be kept in a file and gone on from.
+    pub fn part(&self) -> Part {
+        let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
+        let settings = &self.world.settings;
+        Part::new(self.whole(), all.rounds.held().to_vec(), all.film.sums(settings, 0..settings.halves()))
+    }
+
+    /// Goes on from a part of this picture, whose samples take the place of all there are. Those of it that lie between
+    /// `first_sample` and `samples` are not made again; those that do not are kept as well.
+    ///
+    /// # Errors
+    /// It is of another picture, or the render stops by noise or time.
+    pub fn resume(&mut self, part: Part) -> Result<(), PartError> {
+        if self.world.settings.adapts() {
+            return Err(PartError::Adapts);
+        }
+        part.is_of(&self.whole())?;
+        self.restart();
+        let all = self.gathered.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let (held, sums) = part.into_sums();
+        all.rounds.resume(held);
+        all.film.keep(sums);
+        Ok(())
+    }
+
+    /// What its parts are parts of.
+    fn whole(&self) -> Whole {
+        let (scene, settings) = (&self.world.scene, &self.world.settings);
+        let Settings { width, height, alpha, seed, tile_size, .. } = *settings;
+        Whole {
+            scene: scene.name.clone(),
+            fingerprint: *self.fingerprint.get_or_init(|| fingerprint(scene, settings)),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            width,
+            height,
+            alpha,
+            seed,
+            tile_size,
+        }
+    }
+
+    /// What was said, and what is missing.
+    fn reports(&self, all: &Gathered) -> Vec<Report> {
+        let mut reports = reports(&self.world.scene, all.reports.clone(), &all.dropped);
+        let empty = all.rounds.taken().filter(|samples| *samples == 0).count();
+        if empty > 0 && all.rounds.late() {
+            let share = 100.0 * empty as f64 / all.rounds.held().len() as f64;
+            let text =
+                format!("warning: the time was up before {share:.0} % of the picture had a sample; that part is black");
+            reports.push(Report::warning(text));
+        }
+        reports
     }
 
     /// Starts the picture anew.
@@ -246,7 +321,9 @@ impl Renderer {
                 Ok(None) | Err(_) => *wave = Mutex::new(None),
             }
         }
-        self.gathered = Mutex::new(Gathered::new(&self.world, Instant::now()));
+        let start = Instant::now();
+        self.world.stop.begin(&self.world.settings, start);
+        self.gathered = Mutex::new(Gathered::new(&self.world, start));
     }
 
     /// Looks through another camera; the picture starts anew.
@@ -296,10 +373,12 @@ impl Renderer {
     /// Makes the world anew but for its hierarchy, and for its background where one is given.
     fn remake(&mut self, scene: Scene, settings: Settings, sky: Option<Sky>) {
         let start = Instant::now();
-        let accel = self.world.accel.clone();
-        self.world = self.pool.install(|| World::new(accel, scene, settings, sky));
+        let (accel, stop) = (self.world.accel.clone(), self.world.stop.clone());
+        stop.begin(&settings, start);
+        self.world = self.pool.install(|| World::new(accel, scene, settings, sky, stop));
         self.world.reports.extend(self.said_moving.iter().cloned());
         self.seconds_preparing = start.elapsed().as_secs_f64();
+        self.fingerprint = OnceLock::new();
         self.waves = empty_waves(&self.pool);
         self.gathered = Mutex::new(Gathered::new(&self.world, start));
     }

@@ -1,9 +1,11 @@
 //! What a user can set about a render.
 
 use super::error::SettingsError;
+use crate::limits::{BOUNCES, ROULETTE};
 use crate::scene::Options;
 use crate::{closure, exec};
 use std::str::FromStr;
+use std::time::{Duration, Instant};
 
 /// How light reaches a surface point: the methods that may be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -111,10 +113,13 @@ pub struct Settings {
     pub height: u32,
     /// Samples a pixel; the most of them when `noise` or `seconds` is set.
     pub samples: u32,
+    /// The number of the first sample, below `samples`: samples are numbered, and a sample of a number is the same in any render.
+    pub first_sample: u32,
     /// Stops a tile when the root of its mean square error, estimated from two half pictures, is below this; in units
     /// of radiance, as the picture has it.
     pub noise: Option<f32>,
-    /// Stops when this many seconds have gone by since the render began; the picture then depends on the machine.
+    /// Stops when this many seconds have gone by since the render began, in the middle of a shader if need be; the picture then
+    /// depends on the machine, and what had no sample by then is black.
     pub seconds: Option<f64>,
     /// Seed of the random numbers; a scene, a seed and a sample count make one image.
     pub seed: u32,
@@ -122,7 +127,7 @@ pub struct Settings {
     pub threads: usize,
     /// The most bounces of a path.
     pub max_bounces: u32,
-    /// From this bounce on, paths that carry little may end early.
+    /// From this bounce on, paths that carry little may end early; from [`ROULETTE`] on all may.
     pub rr_depth: u32,
     /// False sends every sample through its pixel's centre.
     pub jitter: bool,
@@ -155,11 +160,12 @@ impl Default for Settings {
             width: 640,
             height: 480,
             samples: 1,
+            first_sample: 0,
             noise: None,
             seconds: None,
             seed: 0,
             threads: 0,
-            max_bounces: 1_000_000,
+            max_bounces: BOUNCES,
             rr_depth: 5,
             jitter: true,
             alpha: false,
@@ -179,11 +185,11 @@ impl Default for Settings {
 impl Settings {
     /// The settings with what a scene's `<Option>`s ask for, which win as they do in testrender.
     pub fn with_options(mut self, options: &Options) -> Self {
-        self.max_bounces = options.max_bounces.unwrap_or(self.max_bounces);
-        self.rr_depth = options.rr_depth.unwrap_or(self.rr_depth);
+        self.max_bounces = options.max_bounces.unwrap_or(self.max_bounces).min(BOUNCES);
+        self.rr_depth = options.rr_depth.unwrap_or(self.rr_depth).min(ROULETTE);
         // A number of samples does not mean much to a render that stops by itself.
         let fixed = options.aa.filter(|_| !self.adapts());
-        self.samples = fixed.map_or(self.samples, |aa| aa * aa);
+        self.samples = fixed.map_or(self.samples, |aa| aa.saturating_mul(aa));
         self.jitter = options.no_jitter.map_or(self.jitter, |no| !no);
         self.show_globals = options.show_globals.unwrap_or(self.show_globals);
         self
@@ -192,6 +198,11 @@ impl Settings {
     /// True when the number of samples is found out while rendering.
     pub fn adapts(&self) -> bool {
         self.noise.is_some() || self.seconds.is_some()
+    }
+
+    /// When a render that began at `start` stops, if it has a time.
+    pub(super) fn deadline(&self, start: Instant) -> Option<Instant> {
+        self.seconds.map(|seconds| start + Duration::from_secs_f64(seconds.min(1e9)))
     }
 
     /// How many halves the samples are split into.
@@ -209,8 +220,11 @@ impl Settings {
         if self.width == 0 || self.height == 0 || u64::from(self.width) * u64::from(self.height) > 1 << 27 {
             return Err(SettingsError::Size { width: self.width, height: self.height });
         }
-        if self.samples == 0 {
+        if self.samples <= self.first_sample {
             return Err(SettingsError::NoSamples);
+        }
+        if self.adapts() && self.first_sample > 0 {
+            return Err(SettingsError::First);
         }
         if self.noise.is_some_and(|noise| !(noise > 0.0 && noise.is_finite())) {
             return Err(SettingsError::Noise);

@@ -5,6 +5,7 @@ use super::told::Told;
 use crate::closure::tree::Tree;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::exec::{Group, Host, Machine, Points, Report};
+use crate::limits::LOBES;
 use crate::math::columns::Column3;
 use glam::Vec3;
 use std::sync::Arc;
@@ -29,6 +30,8 @@ pub struct Shading {
     reports: Vec<Report>,
     /// True once a shader cannot be run; from then on nothing is shaded.
     failed: bool,
+    /// The time was up in the middle of the work.
+    given_up: bool,
     nothing: Tree,
     /// All reports so far, as text.
     told: Told,
@@ -49,6 +52,7 @@ impl Shading {
             viewer: Column3::default(),
             reports: Vec::new(),
             failed: false,
+            given_up: false,
             nothing: Tree::default(),
             told: Told::default(),
         }
@@ -71,16 +75,22 @@ impl Shading {
             self.viewer.y[lane] = -i.y[lane];
             self.viewer.z[lane] = -i.z[lane];
         }
-        if self.failed {
+        if self.failed || self.given_up {
             self.nothing.clear(self.points.len);
             self.lobes.flatten(group.library(), &self.nothing, &self.viewer, &self.points.ng);
             return;
         }
-        let tree = self.machine.shade(group, &self.points);
+        self.machine.shade(group, &self.points);
+        self.given_up |= self.machine.given_up();
+        let tree = self.machine.tree();
         self.smooth.swap(&mut self.points);
         let Points { ng, backfacing, .. } = &self.points;
         self.lobes.flatten_sides(group.library(), tree, &self.viewer, ng, backfacing);
         let mut news = Vec::new();
+        if let Some(node) = self.lobes.crowded() {
+            let place = tree.site_near(node).map(|site| group.place(site)).unwrap_or_default();
+            news.push(Report::fatal(place, format!("a batch has more than {LOBES} lobes, or layers over them")));
+        }
         if !self.lobes.dropped().is_empty() {
             report_dropped(group, tree, &self.lobes, &mut news);
         }
@@ -96,6 +106,16 @@ impl Shading {
                 self.reports.push(report);
             }
         }
+    }
+
+    /// Begins work that is wanted, after such that was given up.
+    pub fn go_on(&mut self) {
+        self.given_up = false;
+    }
+
+    /// True once the time was up in the middle of the work.
+    pub fn given_up(&self) -> bool {
+        self.given_up
     }
 
     /// True once a shader cannot be run.
@@ -154,7 +174,7 @@ impl Shading {
     pub fn start_over(&mut self) {
         self.reports.clear();
         self.told.clear();
-        self.failed = false;
+        (self.failed, self.given_up) = (false, false);
     }
 
     /// What shaders printed and complained of since the last call.

@@ -1,23 +1,32 @@
 //! What has been told already: a shader that prints at every point would fill all memory.
 
 use crate::exec::Report;
+use crate::limits::{PRINTED, SAID_BYTES};
 use std::collections::HashSet;
 
-/// How many different reports are told.
-const MOST_REPORTS: usize = 1000;
+/// How many different reports are kept; a command prints fewer.
+const MOST_REPORTS: usize = 2 * PRINTED;
 
 /// The texts of all reports so far.
 #[derive(Debug, Default)]
-pub struct Told(HashSet<String>);
+pub struct Told {
+    texts: HashSet<String>,
+    bytes: usize,
+}
 
 impl Told {
     /// Is this a report to be kept: one that was not told before, while there are not too many, or that a shader cannot be run?
     pub fn is_new(&mut self, report: &Report) -> bool {
-        self.0.len() < MOST_REPORTS && self.0.insert(report.key()) || report.is_fatal()
+        let room = self.texts.len() < MOST_REPORTS && self.bytes < SAID_BYTES;
+        if !room || !self.texts.insert(report.key()) {
+            return report.is_fatal();
+        }
+        self.bytes += report.text.len();
+        true
     }
 
     /// Forgets everything.
     pub fn clear(&mut self) {
-        self.0.clear();
+        *self = Told::default();
     }
 }

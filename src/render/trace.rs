@@ -9,10 +9,13 @@ use super::wave::Wave;
 use super::world::World;
 use std::ops::Range;
 
-/// Follows all paths of the wave to their end.
-fn trace(world: &World, wave: &mut Wave) {
+/// Follows all paths of the wave to their end; false when `stop` has said so before.
+fn trace(world: &World, wave: &mut Wave, stop: &dyn Fn() -> bool) -> bool {
     let mut bounce = 0;
     while !wave.active.is_empty() {
+        if stop() {
+            return false;
+        }
         intersect(world, wave);
         if world.settings.alpha {
             leave_background_out(wave);
@@ -20,6 +23,9 @@ fn trace(world: &World, wave: &mut Wave) {
         background(world, wave);
         sort(world, wave, bounce);
         for batch in 0..wave.sorted.batches.len() {
+            if stop() {
+                return false;
+            }
             wave.take(batch, bounce);
             if world.settings.show_globals != 0 {
                 show_globals(world, wave);
@@ -36,9 +42,14 @@ fn trace(world: &World, wave: &mut Wave) {
             }
         }
         trace_shadows(world, wave);
+        // What a shader has left in the middle is worth nothing.
+        if wave.shading.given_up() {
+            return false;
+        }
         wave.advance();
         bounce += 1;
     }
+    true
 }
 
 /// With an alpha channel, the background behind nothing but clear surfaces is left to whatever the picture is laid over.
@@ -47,13 +58,22 @@ fn leave_background_out(wave: &mut Wave) {
     missed.retain(|&i| !paths[i as usize].clear);
 }
 
-/// Adds `samples` of each of the tile's pixels to `sums`.
+/// Adds `samples` of each of the tile's pixels to `sums`, and gives one behind the last that was added: less than was asked for when
+/// `stop` has said so.
 ///
 /// Where the film has two halves, new samples go to the second; at each power of two all there is moves to the first, so that both
 /// are evenly spread.
-pub fn render_tile(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u32>, sums: &mut TileSums) {
+pub fn render_tile(
+    world: &World,
+    wave: &mut Wave,
+    tile: &Tile,
+    samples: Range<u32>,
+    sums: &mut TileSums,
+    stop: &dyn Fn() -> bool,
+) -> u32 {
     let halves = world.settings.halves();
     sums.open(tile, halves);
+    wave.shading.go_on();
     let mut first = samples.start;
     while first < samples.end {
         let mut end = samples.end;
@@ -63,29 +83,46 @@ pub fn render_tile(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u
                 sums.join();
             }
         }
-        render_part(world, wave, tile, first..end, halves - 1, sums);
+        let done = render_part(world, wave, tile, first..end, (halves - 1, sums), stop);
+        if done < end {
+            return done;
+        }
         first = end;
     }
+    first
 }
 
-/// Adds `samples` of each of the tile's pixels to one half of `sums`.
+/// Adds `samples` of each of the tile's pixels to one half of sums, and gives one behind the last that was added.
 ///
-/// Whole pixels are traced at a time when few samples make a wave, else as many samples of all pixels as fill it. Sums
-/// take sample after sample, and of each the pixels in order, which is the order of the paths in neither.
-fn render_part(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u32>, half: usize, sums: &mut TileSums) {
+/// Whole pixels are traced at a time when few samples make a wave, else as many samples of all pixels as fill it. What is begun when
+/// `stop` says so is left out, for a sample that some pixels have and others do not could not be gone on from.
+fn render_part(
+    world: &World,
+    wave: &mut Wave,
+    tile: &Tile,
+    samples: Range<u32>,
+    (half, sums): (usize, &mut TileSums),
+    stop: &dyn Fn() -> bool,
+) -> u32 {
     let wave_size = world.settings.wave_size.max(1) as u32;
     let count = tile.pixels();
     let per_pixel = (wave_size / count).clamp(1, samples.len().max(1) as u32);
     let pixels_at_once = (wave_size / per_pixel).clamp(1, count);
     for first_sample in samples.clone().step_by(per_pixel as usize) {
         let range = first_sample..samples.end.min(first_sample + per_pixel);
+        let before = (pixels_at_once < count).then(|| sums.clone());
         for first in (0..count).step_by(pixels_at_once as usize) {
             let end = count.min(first + pixels_at_once);
             wave.clear();
             for pixel in first..end {
                 camera::start(world, wave, tile.x + pixel % tile.width, tile.y + pixel / tile.width, range.clone());
             }
-            trace(world, wave);
+            if !trace(world, wave, stop) {
+                if let Some(before) = before {
+                    *sums = before;
+                }
+                return first_sample;
+            }
             for sample in range.clone() {
                 let (mut x, mut y) = (first % tile.width, first / tile.width);
                 let paths = (sample - range.start) as usize..wave.paths.len();
@@ -98,4 +135,5 @@ fn render_part(world: &World, wave: &mut Wave, tile: &Tile, samples: Range<u32>,
         }
         range.for_each(|_| sums.count(half));
     }
+    samples.end
 }

@@ -8,6 +8,7 @@ use super::radiance;
 use super::settings::Settings;
 use super::shading::Shading;
 use super::sky::Sky;
+use super::stop::Stop;
 use crate::exec::{Group, Host, Report};
 use crate::scene::Scene;
 use glam::Vec3;
@@ -33,6 +34,8 @@ pub struct World {
     pub sky: Sky,
     /// The radiance of each object, where it is one constant; zero for objects that do not emit.
     pub object_emission: Vec<Option<Vec3>>,
+    /// When to stop.
+    pub stop: Arc<Stop>,
     /// What shaders said while lights were prepared.
     pub reports: Vec<Report>,
 }
@@ -40,11 +43,11 @@ pub struct World {
 impl World {
     /// Prepares `scene`; runs shaders where emission has to be known beforehand.
     ///
-    /// `accel` is over the scene's geometry. A `sky` that is given is taken as it is.
-    pub fn new(accel: Arc<Accel>, scene: Scene, settings: Settings, sky: Option<Sky>) -> Self {
+    /// `accel` is over the scene's geometry. A `sky` that is given is taken as it is. Shaders give up when `stop` says so.
+    pub fn new(accel: Arc<Accel>, scene: Scene, settings: Settings, sky: Option<Sky>, stop: Arc<Stop>) -> Self {
         let plan = Plan::new(&scene, &settings);
         let host: Arc<dyn Host> =
-            Arc::new(super::host::host(&scene.camera, &settings, &scene.textures, Some(accel.clone())));
+            Arc::new(super::host::host(&scene.camera, &settings, &scene.textures, Some(accel.clone())).until(&stop));
         let mut shading = Shading::new(settings.closure, host.clone());
         let object_emission = radiance::constant_emission(&scene, &plan, &mut shading);
         let powers = radiance::light_powers(&scene, &plan, &mut shading, &object_emission);
@@ -52,6 +55,7 @@ impl World {
         World {
             camera: RayCamera::new(&scene.camera, settings.width, settings.height),
             accel,
+            stop,
             lights: Lights::new(&scene.geometry, &powers, settings.light_choice, settings.light_points),
             host,
             sky,

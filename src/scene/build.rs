@@ -14,6 +14,7 @@ use super::source::within;
 use super::spec::{Statements, parse_group};
 use super::weave::Weave;
 use super::xml::Element;
+use crate::limits::{PRIMITIVES, SCENE_VALUES};
 use crate::texture::TextureFiles;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -23,7 +24,7 @@ const TAGS: [&str; 9] = ["Option", "Camera", "Sphere", "Quad", "Model", "Weave",
 const OPTIONS: [&str; 5] = ["max_bounces", "rr_depth", "aa", "no_jitter", "show_globals"];
 const GROUP_TAGS: [&str; 3] = ["Parameter", "Shader", "ConnectShaders"];
 
-/// The side of the background's importance table when the scene does not say.
+/// The side of the background's table when the scene does not say.
 const DEFAULT_BACKGROUND_RESOLUTION: u32 = 1024;
 
 /// A scene in the making.
@@ -37,6 +38,10 @@ pub struct Builder<'c> {
     later_models: HashMap<String, usize>,
     /// Meshes that another element will need.
     meshes: HashMap<PathBuf, MeshFile>,
+    /// Triangles, spheres and quads that all elements make, as far as it is known.
+    announced: u64,
+    /// Numbers and texts of all parameters so far.
+    values: usize,
     /// Materials that have a displacement group and no other yet.
     unshaded: Vec<u32>,
 }
@@ -52,7 +57,7 @@ impl<'c> Builder<'c> {
             geometry: Arc::default(),
             background: None,
             warnings: Vec::new(),
-            textures: Arc::new(TextureFiles::new(folders.clone())),
+            textures: Arc::new(TextureFiles::new(folders.clone()).with_access(compiler.access())),
         };
         Builder {
             scene,
@@ -62,15 +67,37 @@ impl<'c> Builder<'c> {
             by_name: HashMap::new(),
             later_models: HashMap::new(),
             meshes: HashMap::new(),
+            announced: 0,
+            values: 0,
             unshaded: Vec::new(),
         }
     }
 
     /// Tells of an element that will be taken later: what it shares with others is then kept for it.
-    pub fn announce(&mut self, e: &Element) {
+    ///
+    /// # Errors
+    /// All elements together make more triangles than a scene may have; said before any is made.
+    pub fn announce(&mut self, e: &Element) -> Result<(), SceneError> {
         if let ("Model", Some(filename)) = (e.tag(), e.node.attribute("filename")) {
             *self.later_models.entry(filename.to_owned()).or_default() += 1;
         }
+        self.announced = self.announced.saturating_add(match e.tag() {
+            "Sphere" | "Quad" => 1,
+            "Flakes" => Flakes::read(e).map_or(0, |flakes| flakes.triangles()),
+            "Weave" => Weave::read(e).map_or(0, |weave| weave.triangles()),
+            _ => 0,
+        });
+        self.check_size(e)
+    }
+
+    /// Refuses the element that makes the scene too large.
+    fn check_size(&self, e: &Element) -> Result<(), SceneError> {
+        if self.announced <= PRIMITIVES {
+            return Ok(());
+        }
+        let problem = SceneProblem::TooManyPrimitives { count: self.announced, most: PRIMITIVES };
+        Err(SceneError::at(e.place(), problem)
+            .with_help("give <Flakes> a smaller `count`, <Weave> fewer yarns, meshes fewer faces"))
     }
 
     /// Takes one child of `<World>`.
@@ -211,23 +238,24 @@ impl<'c> Builder<'c> {
         let filename = e.required("filename")?;
         let placement = Placement::read(e)?;
         let place = e.value_place("filename");
-        let Some(path) = self.folders.iter().map(|f| within(f, filename)).find(|p| p.is_file()) else {
+        let access = self.compiler.access();
+        let Some(path) = self.folders.iter().map(|f| within(f, filename)).find(|p| access.is_file(p)) else {
             let looked: Vec<String> = self.folders.iter().map(|f| f.display().to_string()).collect();
             return Err(SceneError::at(place, SceneProblem::MeshNotFound { file: filename.to_owned() })
                 .with_help(format!("looked in {}", looked.join(", "))));
         };
         let wrong = |flaw| SceneError::at(place.clone(), SceneProblem::Mesh { file: path.display().to_string(), flaw });
-        let file = match self.meshes.remove(&path) {
+        let mut file = match self.meshes.remove(&path) {
             Some(file) => file,
-            None => {
-                let file = MeshFile::read(&path).map_err(wrong)?;
-                self.scene.warnings.extend(file.warnings.iter().cloned());
-                file
-            }
+            None => MeshFile::read(&path, &access).map_err(wrong)?,
         };
+        // Those of a file are told once.
+        self.scene.warnings.append(&mut file.warnings);
+        self.announced = self.announced.saturating_add(file.triangles());
+        self.check_size(e)?;
         let names = MaterialNames { by_name: &self.by_name, last };
-        let added = add_mesh(&mut self.geometry, &file, placement.as_ref(), &names, &place).map_err(wrong)?;
-        self.warn_of_mesh(filename, &place, &added);
+        let added = add_mesh(&mut self.geometry, &file, placement.as_ref(), &names, &place);
+        self.warn_of_mesh(filename, &place, &added.map_err(wrong)?);
         // Kept for the next element of this file; none comes, and it goes with the last one that is told of.
         if self.later_models.get_mut(filename).is_some_and(|left| std::mem::replace(left, left.saturating_sub(1)) > 1) {
             self.meshes.insert(path, file);
@@ -242,6 +270,9 @@ impl<'c> Builder<'c> {
         } else if added.degenerate > 0 {
             let count = added.degenerate;
             warnings.push(format!("{place}: warning: {count} triangles of `{filename}` have no area and are left out"));
+        }
+        if added.hurried {
+            warnings.push(format!("{place}: warning: polygons of `{filename}` have too many corners to be cut well"));
         }
         if let [first, others @ ..] = &added.unmatched[..] {
             let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
@@ -302,6 +333,10 @@ impl<'c> Builder<'c> {
                 .with_help("a parameter belongs to the next shader of the group"));
         }
         check_connections(&layers, &connections)?;
+        self.values += layers.iter().flat_map(|layer| &layer.params).map(|param| param.values.len()).sum::<usize>();
+        if self.values > SCENE_VALUES {
+            return Err(SceneError::at(e.place(), SceneProblem::TooManyValues { most: SCENE_VALUES }));
+        }
         let search = self.folders.clone();
         let spec = GroupSpec {
             usage,

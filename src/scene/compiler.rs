@@ -11,9 +11,11 @@ use crate::exec::Group;
 use crate::ir::lower::Binding;
 use crate::lang::path::root;
 use crate::lang::types::{Base, Length, Type};
+use crate::limits::SHADER_BYTES;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+use velour_grammar::files::Access;
 
 /// Compiles groups from `.osl` files, from shaders in memory and from those in the binary.
 #[derive(Debug, Default)]
@@ -24,7 +26,12 @@ pub struct ShaderFiles {
     warnings: Mutex<Vec<String>>,
     memory: HashMap<String, Shader>,
     files: Mutex<HashMap<PathBuf, Shader>>,
+    /// The shaders that the files of each folder declare, by name, once a folder was searched.
+    declared: Mutex<HashMap<PathBuf, Declared>>,
 }
+
+/// Names of shaders and the file of each.
+type Declared = Arc<HashMap<String, PathBuf>>;
 
 impl ShaderFiles {
     /// Uses a compiler that has been set up by the host.
@@ -68,7 +75,7 @@ impl ShaderFiles {
         if let Some(shader) = self.memory.get(&layer.shader) {
             return Ok(shader.clone());
         }
-        let compiled = if let Some(path) = find_shader(&layer.shader, search) {
+        let compiled = if let Some(path) = self.find(&layer.shader, search) {
             self.once(&path, || self.compiler.compile_file(&path))
         } else if let Some((file, text)) = shipped(&layer.shader) {
             self.once(Path::new(file), || self.compiler.compile(file, text))
@@ -76,7 +83,7 @@ impl ShaderFiles {
             let folders: Vec<String> = search.iter().map(|folder| folder.display().to_string()).collect();
             let problem = SceneProblem::ShaderNotFound { shader: layer.shader.clone() };
             let code = search.iter().map(|folder| within(folder, &format!("{}.oso", layer.shader)));
-            let help = match code.into_iter().find(|path| path.is_file()) {
+            let help = match code.into_iter().find(|path| self.compiler.options.access.is_file(path)) {
                 Some(code) => {
                     format!("{} is code for OSL's tools; velour needs the text, `{}.osl`", code.display(), layer.shader)
                 }
@@ -87,6 +94,19 @@ impl ShaderFiles {
         compiled.map_err(|error| {
             let problem = SceneProblem::Shader { shader: layer.shader.clone(), error: Arc::new(error) };
             SceneError::at(layer.place.clone(), problem)
+        })
+    }
+
+    /// The file of a shader, see [`find_shader`]; a folder is searched for what its files declare once.
+    fn find(&self, name: &str, search: &[PathBuf]) -> Option<PathBuf> {
+        let access = &self.compiler.options.access;
+        find_named(name, search, access).or_else(|| {
+            let mut folders = self.declared.lock().unwrap_or_else(PoisonError::into_inner);
+            let name = name.strip_suffix(".oso").unwrap_or(name);
+            search.iter().find_map(|folder| {
+                let declared = folders.entry(folder.clone()).or_insert_with(|| Arc::new(declared_in(folder, access)));
+                declared.get(name).cloned()
+            })
         })
     }
 
@@ -108,38 +128,51 @@ impl ShaderFiles {
 
 /// The file of a shader: in one of the folders `name.oso`, where velour has written it, `name.osl` or `name`, or `name` as a path; else a
 /// file of one of the folders that declares a shader of this name, the first by its own.
-pub fn find_shader(name: &str, search: &[PathBuf]) -> Option<PathBuf> {
+pub fn find_shader(name: &str, search: &[PathBuf], access: &Access) -> Option<PathBuf> {
+    let bare = name.strip_suffix(".oso").unwrap_or(name);
+    let declared = || search.iter().find_map(|folder| declared_in(folder, access).remove(bare));
+    find_named(name, search, access).or_else(declared)
+}
+
+fn find_named(name: &str, search: &[PathBuf], access: &Access) -> Option<PathBuf> {
     let name = name.strip_suffix(".oso").unwrap_or(name);
-    let with_extension = if name.ends_with(".osl") { name.to_owned() } else { format!("{name}.osl") };
-    let made = if name.ends_with(".osl") { String::new() } else { format!("{name}.oso") };
+    let text = name.ends_with(".osl");
+    let with_extension = if text { name.to_owned() } else { format!("{name}.osl") };
+    let made = (!text).then(|| format!("{name}.oso"));
     // Who has compiled a shader has said how: with these macros.
-    let there = |path: &PathBuf| {
-        Recipe::of_file(path).is_some() || path.extension().is_none_or(|e| e != "oso") && path.is_file()
+    let recipe = |path: &PathBuf| Recipe::of_file(path, access).is_some();
+    let pair = |of: &dyn Fn(&str) -> PathBuf| {
+        let made = made.as_deref().map(of).filter(recipe);
+        made.or_else(|| Some(of(&with_extension)).filter(|path| access.is_file(path)))
     };
-    let candidates = search.iter().flat_map(|folder| [within(folder, &made), within(folder, &with_extension)]);
-    let named = candidates.chain([PathBuf::from(&made), PathBuf::from(&with_extension)]).find(there);
-    named.or_else(|| search.iter().find_map(|folder| declares_in(folder, name)))
+    search.iter().find_map(|folder| pair(&|name| within(folder, name))).or_else(|| pair(&|name| PathBuf::from(name)))
 }
 
-/// The first file of a folder, in the order of names, whose text declares the shader.
-fn declares_in(folder: &Path, name: &str) -> Option<PathBuf> {
-    let entries = std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path());
-    let mut files: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|e| e == "osl")).collect();
-    files.sort();
-    files
-        .into_iter()
-        .find(|path| std::fs::read(path).is_ok_and(|bytes| declares(&String::from_utf8_lossy(&bytes), name)))
+/// The shaders that the files of a folder declare; of several of one name the first, in the order of the files' names.
+fn declared_in(folder: &Path, access: &Access) -> HashMap<String, PathBuf> {
+    let mut all = HashMap::new();
+    let (mut files, mut bytes) = (access.list(folder), 0);
+    files.retain(|path| path.extension().is_some_and(|e| e == "osl"));
+    for path in files {
+        let Ok(text) = access.read(&path, SHADER_BYTES) else { continue };
+        bytes += text.len() as u64;
+        if bytes > velour_grammar::limits::ALL_BYTES {
+            break;
+        }
+        for name in declared(&String::from_utf8_lossy(&text)) {
+            all.entry(name.to_owned()).or_insert_with(|| path.clone());
+        }
+    }
+    all
 }
 
-/// Does a text say `shader NAME`, or another kind of shader, in words that follow each other?
-fn declares(text: &str, name: &str) -> bool {
-    let word = |c: char| c.is_alphanumeric() || c == '_';
-    let kinds = ["shader", "surface", "displacement", "volume"];
-    text.match_indices(name).any(|(at, _)| {
-        let (before, after) = (&text[..at], &text[at + name.len()..]);
-        let kind = before.trim_end().rsplit(|c| !word(c)).next().unwrap_or_default();
-        let apart = before.ends_with(char::is_whitespace) && !after.starts_with(word);
-        apart && kinds.contains(&kind)
+/// The names that follow `shader`, or another kind of shader, in a text.
+fn declared(text: &str) -> impl Iterator<Item = &str> {
+    let mut kind = false;
+    let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !word.is_empty());
+    words.filter(move |word| {
+        let after = std::mem::replace(&mut kind, ["shader", "surface", "displacement", "volume"].contains(word));
+        after && !kind
     })
 }
 
@@ -150,6 +183,10 @@ fn has(shader: &Shader, path: &str) -> bool {
 }
 
 impl GroupCompiler for ShaderFiles {
+    fn access(&self) -> Access {
+        self.compiler.options.access.clone()
+    }
+
     fn take_warnings(&self) -> Vec<String> {
         std::mem::take(&mut self.warnings.lock().unwrap_or_else(PoisonError::into_inner))
     }

@@ -119,6 +119,18 @@ pub enum SceneProblem {
         /// The most there may be.
         most: u64,
     },
+    /// S0305: a scene of too many triangles, spheres and quads.
+    TooManyPrimitives {
+        /// As many as are known of.
+        count: u64,
+        /// The most there may be.
+        most: u64,
+    },
+    /// S0306: parameters with too many values together.
+    TooManyValues {
+        /// The most there may be.
+        most: usize,
+    },
     /// S0401: no file of that name in the folders.
     MeshNotFound {
         /// The file as written.
@@ -259,6 +271,8 @@ impl SceneProblem {
             SceneProblem::NoArea { .. } => "S0302",
             SceneProblem::InsideOut { .. } => "S0303",
             SceneProblem::TooManyTriangles { .. } => "S0304",
+            SceneProblem::TooManyPrimitives { .. } => "S0305",
+            SceneProblem::TooManyValues { .. } => "S0306",
             SceneProblem::MeshNotFound { .. } => "S0401",
             SceneProblem::Mesh { .. } => "S0402",
             SceneProblem::UnknownStatement { .. } => "S0501",
@@ -303,6 +317,12 @@ impl fmt::Display for SceneProblem {
             SceneProblem::InsideOut { tag } => write!(f, "`low` of this <{tag}> is above `high`"),
             SceneProblem::TooManyTriangles { tag, count, most } => {
                 write!(f, "this <{tag}> would have {count} triangles, {most} are the most")
+            }
+            SceneProblem::TooManyPrimitives { count, most } => {
+                write!(f, "the scene has {count} triangles, spheres and quads up to here, {most} are the most")
+            }
+            SceneProblem::TooManyValues { most } => {
+                write!(f, "the parameters up to here have more than {most} values together")
             }
             SceneProblem::MeshNotFound { file } => write!(f, "mesh `{file}` is not found"),
             SceneProblem::Mesh { file, flaw } => write!(f, "mesh `{file}`: {flaw}"),

@@ -2,8 +2,8 @@
 
 use super::error::{Place, SceneError, SceneProblem};
 use super::geometry::{Geometry, Object, Primitive, Shape};
-use super::weave::MOST_TRIANGLES;
 use super::xml::Element;
+use crate::limits::MADE_TRIANGLES;
 use crate::math::elementary::sincos;
 use crate::math::noise::lookup3::hash2;
 use glam::Vec3;
@@ -32,7 +32,7 @@ impl Flakes {
         let flakes = Flakes {
             low: e.required_vector("low")?,
             high: e.required_vector("high")?,
-            count: e.whole("count", 1000, 1..=MOST_TRIANGLES as u32)?,
+            count: e.whole("count", 1000, 1..=MADE_TRIANGLES as u32)?,
             size: e.real("size", 0.0, f32::MIN_POSITIVE..=1e6)?,
             seed: e.whole("seed", 1, 0..=u32::MAX)?,
         };
@@ -41,6 +41,11 @@ impl Flakes {
                 .with_help("`low` has the least x, y and z of the box, `high` the greatest"));
         }
         Ok(flakes)
+    }
+
+    /// How many triangles they are.
+    pub fn triangles(&self) -> u64 {
+        u64::from(self.count)
     }
 
     /// Adds equilateral triangles, as one object.

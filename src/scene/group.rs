@@ -3,6 +3,7 @@
 use super::error::{Place, SceneError};
 use crate::exec;
 use std::path::PathBuf;
+use velour_grammar::files::Access;
 
 /// What a group is used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,6 +87,22 @@ pub enum Values {
     Strings(Vec<String>),
 }
 
+impl Values {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Values::Floats(values) => values.len(),
+            Values::Ints(values) => values.len(),
+            Values::Strings(values) => values.len(),
+        }
+    }
+
+    /// True when there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
 /// What is written after a value: `[[int lockgeom=0]]`, `interpolated`, `interactive`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hints {
@@ -163,6 +180,11 @@ pub struct GroupSpec {
 pub trait GroupCompiler {
     /// Compiles one group, or says what is wrong with it and where.
     fn compile(&self, spec: &GroupSpec) -> Result<exec::Group, SceneError>;
+
+    /// Which files the scene may name.
+    fn access(&self) -> Access {
+        Access::default()
+    }
 
     /// What was odd in the groups since the last call, as lines that begin with a place; asked after each group.
     fn take_warnings(&self) -> Vec<String> {

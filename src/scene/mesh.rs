@@ -4,19 +4,13 @@ use super::error::{MeshFlaw, Place};
 use super::geometry::{Geometry, Object, Primitive, Shape};
 use super::obj::{self, Corner, Note, ObjFlaw, ObjMesh};
 use super::placement::Placement;
+use crate::limits::{CUTTING_STEPS, LIBRARY_BYTES, MESH_BYTES};
 use glam::Vec3;
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
-use std::fs::File;
-use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
-
-/// The largest mesh that is read, in bytes: some forty million triangles.
-const MOST_BYTES: u64 = 4 << 30;
-
-/// The largest MTL file that is looked at.
-const MOST_LIBRARY_BYTES: u64 = 16 << 20;
+use velour_grammar::files::{Access, ReadError};
 
 /// A mesh file, read.
 #[derive(Debug)]
@@ -31,8 +25,8 @@ impl MeshFile {
     ///
     /// # Errors
     /// It cannot be opened, is too large, or is no OBJ.
-    pub fn read(path: &Path) -> Result<Self, MeshFlaw> {
-        let text = bytes_of(path, MOST_BYTES)?;
+    pub fn read(path: &Path, access: &Access) -> Result<Self, MeshFlaw> {
+        let text = access.read(path, MESH_BYTES).map_err(unopened)?;
         let mesh = obj::read(&text).map_err(|flaw| match flaw {
             ObjFlaw::NotText => MeshFlaw::NotText,
             ObjFlaw::Line { line, flaw } => MeshFlaw::Line { line, flaw },
@@ -42,41 +36,36 @@ impl MeshFile {
         }
         let mut warnings: Vec<String> = mesh.notes.warnings(&path.display().to_string()).collect();
         for library in &mesh.libraries {
-            check_library(path, library, &mut warnings);
+            check_library(path, library, access, &mut warnings);
         }
         Ok(MeshFile { mesh, warnings })
     }
+
+    /// How many triangles its faces make at most.
+    pub fn triangles(&self) -> u64 {
+        self.mesh.triangles()
+    }
 }
 
-/// The bytes of a file, of at most `most`; also where the system does not know how many there are.
-fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, MeshFlaw> {
-    let unopened = |error: std::io::Error| MeshFlaw::Unopened { reason: error.to_string() };
-    let file = File::open(path).map_err(unopened)?;
-    let size = file.metadata().map_err(unopened)?.len();
-    let mut bytes = Vec::new();
-    if size <= most {
-        bytes.reserve_exact(size as usize + 1);
-        file.take(most + 1).read_to_end(&mut bytes).map_err(unopened)?;
+fn unopened(error: ReadError) -> MeshFlaw {
+    match error {
+        ReadError::TooLarge { most } => MeshFlaw::TooLarge { most },
+        other => MeshFlaw::Unopened { reason: other.to_string() },
     }
-    if size.max(bytes.len() as u64) > most { Err(MeshFlaw::TooLarge { most }) } else { Ok(bytes) }
 }
 
 /// Warns of what is odd in an MTL file, and of one that is not there: material names are matched all the same.
-fn check_library(mesh: &Path, library: &Note, warnings: &mut Vec<String>) {
+fn check_library(mesh: &Path, library: &Note, access: &Access, warnings: &mut Vec<String>) {
     let folder = mesh.parent().unwrap_or(Path::new(""));
     let whole = folder.join(&library.text);
     // One name with spaces in it, or several names.
-    let files = match whole.is_file() {
+    let files = match access.is_file(&whole) {
         true => vec![whole],
         false => library.text.split_whitespace().map(|name| folder.join(name)).collect(),
     };
     for file in files {
         let shown = file.display().to_string();
-        let bytes = match file.is_file() {
-            true => bytes_of(&file, MOST_LIBRARY_BYTES),
-            false => Err(MeshFlaw::Unopened { reason: "there is no such file".to_owned() }),
-        };
-        match bytes {
+        match access.read(&file, LIBRARY_BYTES).map_err(unopened) {
             Ok(text) => warnings.extend(obj::check_library(&text).warnings(&shown)),
             Err(flaw) => {
                 let place = format!("{}:{}", mesh.display(), library.line);
@@ -109,6 +98,8 @@ pub struct Added {
     pub kept: usize,
     /// Triangles without one, which are left out.
     pub degenerate: usize,
+    /// Some polygons were cut anyhow, as all together have too many corners.
+    pub hurried: bool,
     /// Material names without a shader group, where others have one.
     pub unmatched: Vec<String>,
 }
@@ -142,6 +133,7 @@ pub fn add_mesh(
         share_area(adder.geometry, first);
     }
     let mut added = adder.added;
+    added.hurried = adder.steps == 0;
     if by_material {
         added.unmatched = used
             .into_iter()
@@ -169,6 +161,8 @@ struct Adder<'a> {
     /// Corners of a polygon, and its triangles.
     points: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
+    /// Steps that are left for cutting polygons.
+    steps: u64,
 }
 
 impl<'a> Adder<'a> {
@@ -192,7 +186,7 @@ impl<'a> Adder<'a> {
         geometry.uvs.reserve(if mesh.uvs.is_empty() { 0 } else { triangles });
         let mirrors = placement.is_some_and(Placement::mirrors);
         let (added, points, triangles) = (Added::default(), Vec::new(), Vec::new());
-        Ok(Adder { geometry, mesh, positions, normals, mirrors, added, points, triangles })
+        Ok(Adder { geometry, mesh, positions, normals, mirrors, added, points, triangles, steps: CUTTING_STEPS })
     }
 
     /// Adds faces of one material to the object of it, of those from `first` on, or to a new one.
@@ -220,7 +214,7 @@ impl<'a> Adder<'a> {
         self.points.extend(corners.iter().map(|corner| self.positions[corner.position as usize]));
         let mut triangles = std::mem::take(&mut self.triangles);
         triangles.clear();
-        obj::triangulate(&self.points, &mut triangles);
+        obj::triangulate(&self.points, &mut self.steps, &mut triangles);
         let area = triangles.iter().map(|t| self.triangle(t.map(|i| corners[i as usize]), object)).sum();
         self.triangles = triangles;
         area

@@ -1,8 +1,10 @@
 //! Where a scene's text comes from, and where the files that it names are looked for.
 
 use super::error::{SceneError, SceneProblem};
+use crate::limits::SCENE_BYTES;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use velour_grammar::files::Access;
 
 /// Where a scene comes from.
 #[derive(Clone, Debug)]
@@ -17,14 +19,20 @@ pub struct SceneSource {
 
 impl SceneSource {
     /// Reads an argument: a file's name, or the XML itself when it begins with `<`.
-    pub fn read(argument: &str) -> Result<Self, SceneError> {
+    ///
+    /// # Errors
+    /// It cannot be read, or may not be.
+    pub fn read(argument: &str, access: &Access) -> Result<Self, SceneError> {
         if argument.trim_start().starts_with('<') {
             return Ok(SceneSource { name: "<scene text>".into(), text: argument.to_owned(), folder: ".".into() });
         }
         let path = Path::new(argument);
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let unreadable = |error: std::io::Error| {
             SceneError::nowhere(SceneProblem::Unreadable { scene: argument.to_owned(), error: Arc::new(error) })
-        })?;
+        };
+        let bytes = access.read(path, SCENE_BYTES).map_err(|error| unreadable(error.into()))?;
+        let no_text = |_| unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text"));
+        let text = String::from_utf8(bytes).map_err(no_text)?;
         let folder = match path.parent() {
             Some(parent) if parent != Path::new("") => parent.to_owned(),
             _ => ".".into(),

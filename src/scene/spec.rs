@@ -3,6 +3,7 @@
 use super::error::{Place, SceneError, SceneProblem};
 use super::group::{Connection, Hints, Layer, ParamType, ParamValue, Values};
 use super::nearest::nearest;
+use crate::limits::{NUMBERS, SCENE_VALUES};
 
 /// What a group's text holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,7 +18,7 @@ pub struct Statements {
 
 /// Parses `text`; `place_of` turns a byte offset of it into a place.
 pub fn parse_group(text: &str, place_of: &dyn Fn(usize) -> Place) -> Result<Statements, SceneError> {
-    let mut parser = Parser { text, at: 0, place_of, out: Statements::default() };
+    let mut parser = Parser { text, at: 0, place_of, held: 0, out: Statements::default() };
     while parser.skip_blank() {
         parser.statement()?;
     }
@@ -28,6 +29,8 @@ struct Parser<'t> {
     text: &'t str,
     at: usize,
     place_of: &'t dyn Fn(usize) -> Place,
+    /// Values so far.
+    held: usize,
     out: Statements,
 }
 
@@ -199,7 +202,14 @@ impl<'t> Parser<'t> {
         if name.is_empty() {
             return Err(SceneError::at(place, SceneProblem::NameMissing { what: "a parameter's name".to_owned() }));
         }
+        if array.flatten().is_some_and(|length| length * kind.components() > NUMBERS as usize) {
+            return Err(SceneError::at(place, SceneProblem::TooManyValues { most: NUMBERS as usize }));
+        }
         let (values, array) = self.values(kind, array)?;
+        self.held += values.len();
+        if self.held > SCENE_VALUES {
+            return Err(SceneError::at(place, SceneProblem::TooManyValues { most: SCENE_VALUES }));
+        }
         let hints = self.hints()?;
         self.out.pending.push(ParamValue { kind, array, name, values, hints, place });
         self.end_of_statement()
@@ -214,14 +224,11 @@ impl<'t> Parser<'t> {
         let digits = self.until(&[']']).trim();
         let length = match digits {
             "" => None,
-            // The bound keeps a slip of the pen from asking for all memory.
-            _ => Some(
-                digits
-                    .parse()
-                    .ok()
-                    .filter(|n| (1..=1 << 24).contains(n))
-                    .ok_or_else(|| SceneError::at(place, SceneProblem::ArrayLength { text: digits.to_owned() }))?,
-            ),
+            // No parameter has more, and a slip of the pen does not ask for all memory.
+            _ => Some(digits.parse().ok().filter(|n| (1..=NUMBERS as usize).contains(n)).ok_or_else(|| {
+                SceneError::at(place, SceneProblem::ArrayLength { text: digits.to_owned() })
+                    .with_help(format!("an array has 1 to {NUMBERS} elements"))
+            })?),
         };
         self.take_char(']');
         Ok(Some(length))

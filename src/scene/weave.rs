@@ -3,12 +3,10 @@
 use super::error::{Place, SceneError, SceneProblem};
 use super::geometry::{Geometry, Object, Primitive, Shape};
 use super::xml::Element;
+use crate::limits::MADE_TRIANGLES;
 use crate::math::elementary::{cos, sin, sincos};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
-
-/// The most triangles that one element may make; they take about 200 bytes each while a scene is rendered.
-pub const MOST_TRIANGLES: u64 = 8_000_000;
 
 /// Which yarns lie on top where they cross.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,8 +105,8 @@ impl Weave {
                 .with_help("`edge_x` and `edge_y` must both have a length and not be parallel"));
         }
         let count = weave.triangles();
-        if count > MOST_TRIANGLES {
-            let problem = SceneProblem::TooManyTriangles { tag: e.tag().to_owned(), count, most: MOST_TRIANGLES };
+        if count > MADE_TRIANGLES {
+            let problem = SceneProblem::TooManyTriangles { tag: e.tag().to_owned(), count, most: MADE_TRIANGLES };
             return Err(SceneError::at(e.place(), problem)
                 .with_help("lower `warp`, `weft`, `segments` or `sides`; the count is 4 times their product"));
         }

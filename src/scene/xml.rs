@@ -3,8 +3,9 @@
 use super::error::{Place, SceneError, SceneProblem};
 use super::nearest::nearest;
 use super::places::Places;
+use crate::limits::{ATTRIBUTES, SCENE_NODES};
 use glam::Vec3;
-use roxmltree::{Attribute, Document, Node};
+use roxmltree::{Attribute, Document, Node, ParsingOptions};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -16,17 +17,15 @@ pub struct Element<'d, 'i> {
     places: Arc<Places<'i>>,
 }
 
-/// The most attributes of an element. The parser compares each with all others.
-const MOST_ATTRIBUTES: usize = 1024;
-
 /// Parses `text`; the error has its place in `file`.
 pub fn parse<'i>(text: &'i str, file: &Arc<str>) -> Result<Document<'i>, SceneError> {
     let not_xml = |place, reason: String| SceneError::at(place, SceneProblem::NotXml { reason });
     if let Some(offset) = crowded(text.as_bytes()) {
-        let reason = format!("an element has more than {MOST_ATTRIBUTES} attributes");
+        let reason = format!("an element has more than {ATTRIBUTES} attributes");
         return Err(not_xml(Places::new(file, text).at(offset), reason).with_help("use several elements"));
     }
-    Document::parse(text).map_err(|e| {
+    let options = ParsingOptions { nodes_limit: SCENE_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|e| {
         let pos = e.pos();
         let place = Place { file: file.clone(), line: pos.row, column: pos.col };
         // The parser ends its sentence with the position, which the place already says.
@@ -54,7 +53,7 @@ fn crowded(text: &[u8]) -> Option<usize> {
             }
             at += text[at..].iter().position(|b| *b == text[quote])? + 1;
             values += 1;
-            if values > MOST_ATTRIBUTES {
+            if values > ATTRIBUTES {
                 return Some(start);
             }
         }
@@ -225,8 +224,8 @@ mod tests {
 
     #[test]
     fn an_element_of_too_many_attributes_is_found_and_no_other_text() {
-        let many: String = (0..=MOST_ATTRIBUTES).map(|i| format!(" a{i}='<b c=\">'")).collect();
-        let few: String = (0..MOST_ATTRIBUTES).map(|i| format!(" a{i}=\"'\"")).collect();
+        let many: String = (0..=ATTRIBUTES).map(|i| format!(" a{i}='<b c=\">'")).collect();
+        let few: String = (0..ATTRIBUTES).map(|i| format!(" a{i}=\"'\"")).collect();
         assert_eq!(crowded(format!("<a x='1'><b{many}/></a>").as_bytes()), Some(9));
         for text in [format!("<!--{many}-->"), format!("<?p{many}?>"), format!("<b{few}>{many}</b>"), "<a b='".into()] {
             assert_eq!(crowded(text.as_bytes()), None, "{text}");

@@ -1,5 +1,7 @@
 //! What a file says of its picture besides texels.
 
+use crate::limits::ABOUT_BYTES;
+
 /// What a file says of its picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct About {
@@ -10,6 +12,18 @@ pub struct About {
 }
 
 impl About {
+    /// Adds a text, unless there are more than a file may have.
+    pub fn add(&mut self, name: &str, text: String) {
+        if self.bytes() + name.len() + text.len() <= ABOUT_BYTES {
+            self.texts.push((name.to_owned(), text));
+        }
+    }
+
+    /// Bytes that the names and texts take.
+    pub fn bytes(&self) -> usize {
+        self.texts.iter().map(|(name, text)| name.len() + text.len()).sum()
+    }
+
     /// The text of a name, whatever its case.
     pub fn text(&self, name: &str) -> Option<&str> {
         let known = self.texts.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
@@ -26,7 +40,7 @@ impl About {
         for name in ["oiio:AverageColor", "oiio:ConstantColor"] {
             let value = description.split_once(name).and_then(|(_, rest)| rest.strip_prefix('='));
             let value = value.and_then(|rest| rest.split_whitespace().next());
-            self.texts.extend(value.map(|value| (name.to_owned(), value.to_owned())));
+            value.into_iter().for_each(|value| self.add(name, value.to_owned()));
         }
     }
 }
@@ -42,5 +56,9 @@ mod tests {
         assert_eq!(about.text("datetime"), Some("2026:11:29 00:00:00"));
         assert_eq!(about.numbers("oiio:ConstantColor"), Some(vec![0.5, 1.0, 0.25, 1.0]));
         assert_eq!((about.numbers("oiio:AverageColor"), about.numbers("other")), (None, None));
+        let bytes = about.bytes();
+        about.add("long", "x".repeat(ABOUT_BYTES));
+        about.add("short", "x".to_owned());
+        assert_eq!((about.text("long"), about.text("short"), about.bytes()), (None, Some("x"), bytes + 6));
     }
 }

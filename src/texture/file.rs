@@ -4,11 +4,13 @@ use super::about::About;
 use super::pyramid::Texture;
 use super::texels::{Level, Texels};
 use super::wrap::Wrap;
+use crate::limits::{ABOUT_BYTES, TEXTURE_BYTES};
 use exr::prelude as exr;
 use std::fmt;
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Seek};
 use std::path::{Path, PathBuf};
+use velour_grammar::files::Access;
 
 /// Why a texture could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,13 +62,25 @@ const MOST: usize = 1 << 16;
 /// # Errors
 /// The file is missing, wrong, or too large.
 pub fn read(path: &Path, budget: u64) -> Result<Texture, TextureError> {
+    read_allowed(path, budget, &Access::default())
+}
+
+/// The same for a file that may have to be in a sandbox.
+///
+/// # Errors
+/// As for [`read`].
+pub fn read_allowed(path: &Path, budget: u64, access: &Access) -> Result<Texture, TextureError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let fail = |reason: String| TextureError::Unreadable { path: path.to_owned(), reason };
     // The decoders are others' code: whatever a broken file makes them do ends here.
-    let decode = || match extension.as_str() {
-        "exr" => read_exr(path, budget),
-        "tif" | "tiff" | "tx" | "env" => read_tiff(path, budget),
-        _ => read_image(path, budget),
+    let decode = || {
+        let (file, _) = access.open(path, TEXTURE_BYTES).map_err(|error| error.to_string())?;
+        let file = BufReader::new(file);
+        match extension.as_str() {
+            "exr" => read_exr(file, budget),
+            "tif" | "tiff" | "tx" | "env" => read_tiff(file, budget),
+            _ => read_image(file, budget),
+        }
     };
     let decoded = std::panic::catch_unwind(decode).unwrap_or_else(|_| Err("its decoder has given up".to_owned()));
     let texture = decoded.map_err(fail)?;
@@ -87,12 +101,14 @@ fn sized(width: usize, height: usize, bytes: usize, budget: u64) -> Result<(), S
     }
 }
 
-fn read_image(path: &Path, budget: u64) -> Result<Texture, String> {
+fn read_image(mut file: BufReader<File>, budget: u64) -> Result<Texture, String> {
     use image::{DynamicImage, ImageReader};
-    let open = || ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|error| error.to_string());
-    let (width, height) = open()?.into_dimensions().map_err(|error| error.to_string())?;
+    let failed = |error: std::io::Error| error.to_string();
+    let looked = ImageReader::new(&mut file).with_guessed_format().map_err(failed)?;
+    let (width, height) = looked.into_dimensions().map_err(|error| error.to_string())?;
     sized(width as usize, height as usize, 4, budget)?;
-    let mut reader = open()?;
+    file.rewind().map_err(failed)?;
+    let mut reader = ImageReader::new(file).with_guessed_format().map_err(failed)?;
     reader.no_limits();
     let picture = reader.decode().map_err(|error| error.to_string())?;
     let (width, height) = (width as usize, height as usize);
@@ -112,11 +128,10 @@ fn read_image(path: &Path, budget: u64) -> Result<Texture, String> {
 }
 
 /// The images of a TIFF that are each half of the one before are its levels.
-fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
+fn read_tiff(file: BufReader<File>, budget: u64) -> Result<Texture, String> {
     use tiff::decoder::{Decoder, DecodingResult, Limits};
     let failed = |error: tiff::TiffError| error.to_string();
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    let mut decoder = Decoder::new(BufReader::new(file)).map_err(failed)?.with_limits(Limits::unlimited());
+    let mut decoder = Decoder::new(file).map_err(failed)?.with_limits(Limits::unlimited());
     let (mut levels, mut of_all): (Vec<Level>, usize) = (Vec::new(), 0);
     let (mut wrap, mut about) = ([Wrap::default(); 2], About::default());
     loop {
@@ -135,7 +150,11 @@ fn read_tiff(path: &Path, budget: u64) -> Result<Texture, String> {
         let left = levels.iter().fold(budget, |left, level| left.saturating_sub(level.bytes() as u64));
         sized(width, height, layout.bytes, left)?;
         if levels.is_empty() {
+            let mut texts = Limits::unlimited();
+            texts.ifd_value_size = ABOUT_BYTES;
+            decoder = decoder.with_limits(texts);
             (wrap, about) = (tiff_wrap(&mut decoder), tiff_about(&mut decoder));
+            decoder = decoder.with_limits(Limits::unlimited());
         }
         let mut all = DecodingResult::U8(Vec::new());
         let whole = decoder.read_image_to_buffer(&mut all).map_err(failed)?;
@@ -182,7 +201,7 @@ fn tiff_about<R: std::io::Read + std::io::Seek>(decoder: &mut tiff::decoder::Dec
     ];
     for (tag, name) in tags {
         if let Ok(text) = decoder.get_tag_ascii_string(tag) {
-            about.texts.push((name.to_owned(), text.trim_end_matches('\0').to_owned()));
+            about.add(name, text.trim_end_matches('\0').to_owned());
         }
     }
     let description = about.text("ImageDescription").unwrap_or_default().to_owned();
@@ -279,11 +298,16 @@ fn placed(rows: &[f32], [width, _]: [usize; 2], count: usize, offset: [i64; 2], 
     out
 }
 
-fn read_exr(path: &Path, budget: u64) -> Result<Texture, String> {
+fn read_exr(mut file: BufReader<File>, budget: u64) -> Result<Texture, String> {
     use exr::ReadChannels;
     use exr::ReadLayers;
+    let claims = exr::MetaData::read_from_unbuffered(&mut file, false).map_err(|error| error.to_string())?;
+    for header in &claims.headers {
+        sized(header.layer_size.0, header.layer_size.1, 2 * header.channels.list.len().max(1), budget)?;
+    }
+    file.rewind().map_err(|error| error.to_string())?;
     let image = exr::read().no_deep_data().all_resolution_levels().all_channels().first_valid_layer().all_attributes();
-    let image = image.from_file(path).map_err(|error| error.to_string())?;
+    let image = image.from_buffered(file).map_err(|error| error.to_string())?;
     let layer = image.layer_data;
     let size = [layer.size.0, layer.size.1];
     // s and t span the display window, of which the data may be a part.
@@ -329,11 +353,10 @@ fn read_exr(path: &Path, budget: u64) -> Result<Texture, String> {
         let first = offset.map(|x| x as i32);
         about.data = Some([first[0], first[1], first[0] + size[0] as i32 - 1, first[1] + size[1] as i32 - 1]);
     }
-    let date = layer.attributes.capture_date.as_ref().map(|date| ("DateTime".to_owned(), date.to_string()));
-    about.texts.extend(date);
+    layer.attributes.capture_date.iter().for_each(|date| about.add("DateTime", date.to_string()));
     for (name, value) in image.attributes.other.iter().chain(&layer.attributes.other) {
         if let exr::AttributeValue::Text(text) = value {
-            about.texts.push((name.to_string(), text.to_string()));
+            about.add(&name.to_string(), text.to_string());
         }
     }
     let wrap = image.attributes.other.iter().chain(&layer.attributes.other).find_map(|(name, value)| match value {

@@ -1,12 +1,13 @@
 //! The textures of a session: found in folders, read once, held while the session lasts.
 
-use super::file::{TextureError, read};
+use super::file::{TextureError, read_allowed};
 use super::pyramid::Texture;
+use crate::limits::SHADER_BYTES;
 use std::collections::HashMap;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use velour_grammar::files::Access;
 
 /// A texture, or why there is none; the same answer each time.
 type Entry = Result<Arc<Texture>, TextureError>;
@@ -19,6 +20,7 @@ pub struct TextureFiles {
     used: AtomicU64,
     known: RwLock<HashMap<String, Entry>>,
     reading: Mutex<()>,
+    access: Access,
 }
 
 impl TextureFiles {
@@ -28,18 +30,23 @@ impl TextureFiles {
         if let Some(path) = std::env::var_os("TEXTUREPATH") {
             folders.extend(std::env::split_paths(&path));
         }
-        TextureFiles::of(folders, default_budget())
+        TextureFiles::of(folders, default_budget(), Access::default())
+    }
+
+    /// The same, of which only those are read that may be.
+    pub fn with_access(self, access: Access) -> Self {
+        TextureFiles::of(self.folders, self.budget, access)
     }
 
     /// Those of the same folders with another limit of the bytes of all together, which by default is half of the machine's memory; none of
     /// them is read yet.
     pub fn limited(&self, bytes: u64) -> Self {
-        TextureFiles::of(self.folders.clone(), bytes)
+        TextureFiles::of(self.folders.clone(), bytes, self.access.clone())
     }
 
-    fn of(folders: Vec<PathBuf>, budget: u64) -> Self {
+    fn of(folders: Vec<PathBuf>, budget: u64, access: Access) -> Self {
         let (used, known, reading) = (AtomicU64::new(0), RwLock::default(), Mutex::default());
-        TextureFiles { folders, budget, used, known, reading }
+        TextureFiles { folders, budget, used, known, reading, access }
     }
 
     /// The texture of a name.
@@ -63,7 +70,7 @@ impl TextureFiles {
     fn load(&self, name: &str) -> Entry {
         let path = self.find(name).ok_or_else(|| TextureError::NotFound { name: name.to_owned() })?;
         let left = self.budget.saturating_sub(self.used.load(Ordering::Relaxed));
-        let texture = read(&path, left)?;
+        let texture = read_allowed(&path, left, &self.access)?;
         self.used.fetch_add(texture.resident().1 as u64, Ordering::Relaxed);
         Ok(Arc::new(texture))
     }
@@ -74,24 +81,18 @@ impl TextureFiles {
     /// One clause: it is not there, no text, or longer than 64 MB.
     pub fn text(&self, name: &str) -> Result<String, String> {
         let path = self.find(name).ok_or_else(|| format!("there is no file `{name}`"))?;
-        let unread = |reason: std::io::Error| format!("`{}` cannot be read: {reason}", path.display());
-        let mut text = String::new();
-        std::fs::File::open(&path).map_err(unread)?.take(MOST_TEXT + 1).read_to_string(&mut text).map_err(unread)?;
-        if text.len() as u64 > MOST_TEXT {
-            return Err(format!("`{}` is longer than {} MB", path.display(), MOST_TEXT >> 20));
-        }
-        Ok(text)
+        let unread = |reason: String| format!("`{}` cannot be read: {reason}", path.display());
+        let bytes = self.access.read(&path, SHADER_BYTES).map_err(|error| unread(error.to_string()))?;
+        String::from_utf8(bytes).map_err(|_| unread("it is not UTF-8 text".to_owned()))
     }
 
-    fn find(&self, name: &str) -> Option<PathBuf> {
+    /// Where the file of a name is.
+    pub fn find(&self, name: &str) -> Option<PathBuf> {
         let here = Path::new(name);
         let beside = self.folders.iter().map(|folder| folder.join(name));
-        std::iter::once(here.to_owned()).chain(beside).find(|path| !name.is_empty() && path.is_file())
+        std::iter::once(here.to_owned()).chain(beside).find(|path| !name.is_empty() && self.access.is_file(path))
     }
 }
-
-/// The most bytes of a text.
-const MOST_TEXT: u64 = 64 << 20;
 
 /// Half of the machine's memory where that can be told, else 4 GB.
 fn default_budget() -> u64 {

@@ -1,13 +1,16 @@
 //! Textures: pictures that shaders look up, as pyramids of levels. This room knows no language.
 
 mod about;
+mod ellipse;
 mod environment;
 #[cfg(feature = "render")]
 mod file;
 #[cfg(feature = "render")]
 mod files;
+mod join;
 mod lookup;
 mod pyramid;
+mod sample;
 mod texels;
 mod udim;
 mod wrap;
@@ -18,8 +21,9 @@ pub use environment::{Up, latitude_longitude};
 pub use file::{TextureError, read};
 #[cfg(feature = "render")]
 pub use files::TextureFiles;
-pub use lookup::{Interpolation, Lookup, Sample, values};
+pub use lookup::values;
 pub use pyramid::Texture;
+pub use sample::{Interpolation, Lookup, Sample};
 pub use texels::{Level, Texels};
 pub use udim::{is_tiled, tile_name};
 pub use wrap::Wrap;

@@ -74,10 +74,10 @@ impl Texture {
         self.levels[number].get_or_init(|| self.level(number - 1).halved())
     }
 
-    /// Levels that have been made or read, and the bytes they take.
+    /// Levels that have been made or read, and the bytes they take, with those of the texts of the file.
     pub fn resident(&self) -> (usize, usize) {
         let there = self.levels.iter().filter_map(OnceLock::get);
-        there.fold((0, 0), |(count, bytes), level| (count + 1, bytes + level.bytes()))
+        there.fold((0, self.about.bytes()), |(count, bytes), level| (count + 1, bytes + level.bytes()))
     }
 
     /// The mean of up to four channels.

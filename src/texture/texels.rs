@@ -108,6 +108,29 @@ impl Level {
         }
     }
 
+    /// Places of texels that have a neighbour after them, from a channel on.
+    #[inline(always)]
+    pub(super) fn near(&self, first: u32) -> Near {
+        let channels = self.channels as u32;
+        let numbers = self.across as u64 * self.height.div_ceil(SIDE) as u64 * (SIDE * SIDE * self.channels) as u64;
+        let counted = first < channels && numbers <= u64::from(u32::MAX);
+        let before = |side: usize| if counted { side as u32 - 1 } else { 0 };
+        let row = (self.across as u32).wrapping_mul((SIDE * SIDE) as u32);
+        Near { columns: before(self.width), rows: before(self.height), channels, row, first }
+    }
+
+    /// Four numbers of the file from the sum of each row and column of [`Near`] on, as [`Level::fours`] has them.
+    #[inline(always)]
+    pub(super) fn near_fours(&self, rows: [u32; 2], columns: [u32; 2]) -> [[Vec4; 2]; 2] {
+        let at = |row: usize, column: usize| rows[row].wrapping_add(columns[column]) as usize;
+        let places = [[at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]];
+        match &self.texels {
+            Texels::Bytes(all) => four_each(all, places, f32::from),
+            Texels::Words(all) => four_each(all, places, f32::from),
+            Texels::Floats(all) => four_each(all, places, |x| x),
+        }
+    }
+
     /// Four numbers of the file from the sum of each row and column on, in [`Level::unit`]; beyond a texel's last channel they are of others.
     #[inline(always)]
     pub fn fours<const N: usize>(&self, rows: [usize; N], columns: [usize; N]) -> [[Vec4; N]; N] {
@@ -167,6 +190,44 @@ impl Level {
     }
 }
 
+/// Places of the texels of a level in 32 bits, which a loop over many works out in SIMD.
+pub(super) struct Near {
+    /// How many columns have a neighbour after them; none where 32 bits are not enough or there is no such channel.
+    pub columns: u32,
+    /// The same of rows.
+    pub rows: u32,
+    channels: u32,
+    /// Texels of a row of blocks.
+    row: u32,
+    /// The first channel.
+    first: u32,
+}
+
+impl Near {
+    const SIDE: u32 = SIDE as u32;
+
+    /// What a column adds to the place of a texel.
+    #[inline(always)]
+    pub fn column(&self, x: u32) -> u32 {
+        let texels = (x / Self::SIDE).wrapping_mul(Self::SIDE * Self::SIDE).wrapping_add(x % Self::SIDE);
+        texels.wrapping_mul(self.channels).wrapping_add(self.first)
+    }
+
+    /// What a row adds to the place of a texel.
+    #[inline(always)]
+    pub fn row(&self, y: u32) -> u32 {
+        let texels = (y / Self::SIDE).wrapping_mul(self.row).wrapping_add(y % Self::SIDE * Self::SIDE);
+        texels.wrapping_mul(self.channels)
+    }
+}
+
+/// Four numbers from each place on; written out like `grid`.
+#[inline(always)]
+fn four_each<T: Copy>(all: &[T], places: [[usize; 2]; 2], number: impl Fn(T) -> f32 + Copy) -> [[Vec4; 2]; 2] {
+    let [[a, b], [c, d]] = places;
+    [[four(all, a, number), four(all, b, number)], [four(all, c, number), four(all, d, number)]]
+}
+
 /// A value for each row and column; written out, because the array functions of the standard library are not inlined here.
 #[inline(always)]
 fn grid<const N: usize>(rows: [usize; N], columns: [usize; N], read: impl Fn(usize) -> Vec4) -> [[Vec4; N]; N] {
@@ -182,7 +243,7 @@ fn grid<const N: usize>(rows: [usize; N], columns: [usize; N], read: impl Fn(usi
 /// Four numbers in one step, as a loop of unknown length costs more than it reads.
 #[inline(always)]
 fn four<T: Copy>(all: &[T], from: usize, number: impl Fn(T) -> f32) -> Vec4 {
-    let four = all.get(from..).and_then(<[T]>::first_chunk::<4>);
+    let four = all.get(from..from.wrapping_add(4)).and_then(<[T]>::first_chunk::<4>);
     four.map_or(Vec4::ZERO, |&[x, y, z, w]| Vec4::new(number(x), number(y), number(z), number(w)))
 }
 

@@ -14,6 +14,7 @@ mod glass;
 mod lights;
 mod materials;
 mod normals;
+mod parts;
 mod rays;
 mod rounds;
 mod shaders;

@@ -4,18 +4,17 @@ use super::scan::{Kind, PpToken};
 use super::state::Preprocessor;
 use crate::decode::decode;
 use crate::diagnostic::Diagnostic;
+use crate::files::ReadError;
+use crate::limits::{ALL_BYTES, FILE_BYTES, INCLUDE_DEPTH, INCLUDE_TOKENS};
 use crate::source::Place;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// How deep includes may be nested.
-const MAX_DEPTH: usize = 64;
 
 /// What a search for a file gave.
 enum Found {
     Text(String, String),
     NotText(String),
-    Unreadable(String, std::io::Error),
+    Unreadable(String, ReadError),
     Nothing(Vec<String>),
 }
 
@@ -34,17 +33,27 @@ impl Preprocessor<'_> {
         let Some((wanted, quoted, place)) = self.wanted(name, arguments) else {
             return;
         };
-        if self.inputs.len() > MAX_DEPTH {
+        if self.inputs.len() > INCLUDE_DEPTH {
             let span = self.table.aside(place, crate::source::NO_CALL);
             self.diagnostics.push(
-                Diagnostic::error("E0104", span, format!("includes are nested more than {MAX_DEPTH} deep"))
+                Diagnostic::error("E0104", span, format!("includes are nested more than {INCLUDE_DEPTH} deep"))
                     .label("not read")
                     .help("does a file include itself? put `#pragma once` at its top"),
             );
+            // One message is enough of what would go on without end.
+            return self.stop();
+        }
+        self.spend(INCLUDE_TOKENS, Some(place));
+        if self.stopped {
             return;
         }
         match self.search(&wanted, quoted) {
             Found::Text(file, text) => {
+                self.bytes = self.bytes.saturating_add(text.len() as u64);
+                if self.bytes > ALL_BYTES {
+                    let most = ALL_BYTES >> 20;
+                    return self.cannot_read(place, format!("included files have more than {most} MB together"), None);
+                }
                 if !self.once.contains(&key(&file)) {
                     self.open(&file, Arc::from(text), Some(place));
                 }
@@ -102,7 +111,7 @@ impl Preprocessor<'_> {
         let beside = here.iter().chain(main.iter().filter(|main| here.as_ref() != Some(*main)));
         for folder in beside.chain(&self.options.include_dirs) {
             let path = folder.join(wanted);
-            match std::fs::read(&path) {
+            match self.options.access.read(&path, FILE_BYTES) {
                 Ok(bytes) => {
                     let name = path.display().to_string();
                     return match decode(&bytes) {
@@ -110,10 +119,10 @@ impl Preprocessor<'_> {
                         None => Found::NotText(name),
                     };
                 }
-                Err(error) if path.is_file() => {
-                    return Found::Unreadable(path.display().to_string(), error);
-                }
-                Err(_) => looked.push(shown(folder)),
+                Err(ReadError::Missing) => looked.push(shown(folder)),
+                // A folder of a header's name is none.
+                Err(ReadError::NotAFile) if path.is_dir() => looked.push(shown(folder)),
+                Err(error) => return Found::Unreadable(path.display().to_string(), error),
             }
         }
         match self.virtual_file(wanted, here.as_deref()) {
@@ -151,6 +160,10 @@ impl Preprocessor<'_> {
             ([], true) => "no folder to look in: name one with -I".to_string(),
             ([], false) => "`<…>` looks only in the folders given with -I, and there are none".to_string(),
             _ => format!("looked in {}; add a folder with -I", looked.join(", ")),
+        };
+        let help = match self.options.access.sandbox() {
+            Some(sandbox) => format!("{help}; nothing outside of the sandbox {} is read", sandbox.display()),
+            None => help,
         };
         self.diagnostics
             .push(Diagnostic::error("E0103", span, format!("cannot find {wanted}")).label("not found").help(help));

@@ -19,7 +19,7 @@ use crate::Options;
 use crate::diagnostic::Diagnostics;
 use crate::source::SourceTable;
 use macros::Macro;
-use scan::PpToken;
+use scan::Kind;
 use state::Preprocessor;
 use std::sync::Arc;
 
@@ -27,14 +27,25 @@ pub(crate) use output::to_text;
 
 /// The result: the tokens with their indices in the table.
 pub(crate) struct Preprocessed {
-    /// The tokens, each with its index in the table of expanded tokens.
-    pub tokens: Vec<(PpToken, u32)>,
+    /// The tokens.
+    pub tokens: Vec<Terminal>,
     /// The files, the table and the calls.
     pub table: SourceTable,
     /// What was wrong.
     pub diagnostics: Diagnostics,
     /// A limit ended the run: the tokens are not all there are.
     pub stopped: bool,
+}
+
+/// A token after macros; the rest of it is in the table.
+#[derive(Clone, Copy)]
+pub(crate) struct Terminal {
+    /// What it is.
+    pub kind: Kind,
+    /// It was the first of its line.
+    pub line_start: bool,
+    /// Its index in the table of expanded tokens.
+    pub index: u32,
 }
 
 /// Runs the preprocessor over the prelude and a text.
@@ -48,7 +59,9 @@ pub(crate) fn run(name: &str, text: &str, options: &Options) -> Preprocessed {
     state.open("<predefined>", Arc::from(macros::predefined(options)), None);
     state.macros.insert("__FILE__".into(), Macro::file());
     state.macros.insert("__LINE__".into(), Macro::line());
-    let mut tokens = Vec::new();
+    let count = state.inputs.iter().map(|input| input.tokens.len()).sum();
+    let mut tokens = Vec::with_capacity(count);
+    state.table.expanded.reserve(count);
     while let Some(token) = state.pull() {
         if let Some(token) = state.expand(token) {
             let index = state.table.expanded.len() as u32;
@@ -58,7 +71,7 @@ pub(crate) fn run(name: &str, text: &str, options: &Options) -> Preprocessed {
                 space: token.space || token.line_start,
                 aside: false,
             });
-            tokens.push((token, index));
+            tokens.push(Terminal { kind: token.kind, line_start: token.line_start, index });
         }
     }
     Preprocessed { tokens, table: state.table, diagnostics: state.diagnostics, stopped: state.stopped }

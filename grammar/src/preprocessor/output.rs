@@ -1,6 +1,6 @@
 //! The preprocessed text, as `-E` prints it.
 
-use super::scan::PpToken;
+use super::Terminal;
 use crate::source::SourceTable;
 use std::fmt::Write;
 
@@ -8,16 +8,17 @@ use std::fmt::Write;
 const MAX_EMPTY_LINES: usize = 8;
 
 /// Prints tokens on the lines they came from. `#line` directives mark where the text changes file or jumps.
-pub(crate) fn to_text(tokens: &[(PpToken, u32)], table: &SourceTable) -> String {
+pub(crate) fn to_text(tokens: &[Terminal], table: &SourceTable) -> String {
     let mut out = String::new();
     let mut at: Option<(u32, usize)> = None;
-    for (token, _) in tokens {
+    for terminal in tokens {
+        let token = table.expanded[terminal.index as usize];
         let place = table.outermost(token.place, token.call);
         let file = &table.files[place.file as usize];
         let line = file.line(place.start);
         match at {
             // Only what starts a line there starts one here: arguments stay on the line of their macro call.
-            Some(_) if !token.line_start => {
+            Some(_) if !terminal.line_start => {
                 if token.space || glued(&out, table.text(token.place)) {
                     out.push(' ');
                 }

@@ -4,42 +4,18 @@ use super::macros::Macro;
 use super::scan::{Kind, PpToken, scan};
 use crate::Options;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::limits::TOKENS;
+use crate::names::NameMap;
 use crate::source::{Place, SourceFile, SourceTable};
 use crate::span::Span;
-use std::collections::{HashMap, HashSet};
-use std::hash::{BuildHasherDefault, Hasher};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// How many tokens files and macros may produce together.
-const BUDGET: usize = 4_000_000;
-
-/// The FNV-1a hash: every name is looked up once, and names are short.
-#[derive(Clone, Copy)]
-pub(super) struct Fnv(u64);
-
-impl Default for Fnv {
-    fn default() -> Self {
-        Fnv(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Hasher for Fnv {
-    fn write(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-
-    fn finish(&self) -> u64 {
-        self.0
-    }
-}
-
 /// A file that is being read.
 pub(super) struct Input {
-    pub(super) tokens: Rc<[PpToken]>,
+    pub(super) tokens: Rc<Vec<PpToken>>,
     pub(super) cursor: usize,
     pub(super) file: u32,
     pub(super) conditions: Vec<Conditional>,
@@ -79,12 +55,14 @@ pub(super) struct Preprocessor<'o> {
     pub(super) options: &'o Options,
     pub(super) table: SourceTable,
     pub(super) diagnostics: Diagnostics,
-    pub(super) macros: HashMap<String, Rc<Macro>, BuildHasherDefault<Fnv>>,
+    pub(super) macros: NameMap<String, Rc<Macro>>,
     pub(super) inputs: Vec<Input>,
     pub(super) frames: Vec<Frame>,
     /// Keys of the files that said `#pragma once`.
     pub(super) once: HashSet<PathBuf>,
     pub(super) budget: usize,
+    /// Bytes of the files that were read.
+    pub(super) bytes: u64,
     /// Set when the budget is spent: nothing more is read.
     pub(super) stopped: bool,
     /// Set while the arguments of a macro call are gathered: the end of a file ends them.
@@ -100,11 +78,12 @@ impl<'o> Preprocessor<'o> {
             options,
             table: SourceTable::new(),
             diagnostics: Diagnostics::default(),
-            macros: HashMap::default(),
+            macros: NameMap::default(),
             inputs: Vec::new(),
             frames: Vec::new(),
             once: HashSet::new(),
-            budget: BUDGET,
+            budget: TOKENS,
+            bytes: 0,
             stopped: false,
             gathering: false,
             depth: 0,
@@ -116,13 +95,20 @@ impl Preprocessor<'_> {
     /// Puts a text on the stack of files.
     pub(super) fn open(&mut self, name: &str, text: Arc<str>, included_from: Option<Place>) {
         let file = self.table.files.len() as u32;
-        let tokens: Rc<[PpToken]> = scan(&text, file).into();
+        let tokens = Rc::new(scan(&text, file));
         let place = tokens.first().map(|t| t.place);
         self.table.files.push(SourceFile::new(name, text, included_from));
         let folder = std::path::Path::new(name).parent().map(PathBuf::from);
         let cost = tokens.len() + 16;
         self.inputs.push(Input { tokens, cursor: 0, file, conditions: Vec::new(), folder });
         self.spend(cost, included_from.or(place));
+    }
+
+    /// Ends the run: nothing more is read.
+    pub(super) fn stop(&mut self) {
+        self.stopped = true;
+        self.frames.clear();
+        self.inputs.clear();
     }
 
     /// Pays for tokens. When nothing is left the run ends with one message.
@@ -133,12 +119,10 @@ impl Preprocessor<'_> {
         match self.budget.checked_sub(tokens) {
             Some(left) => self.budget = left,
             None => {
-                self.stopped = true;
-                self.frames.clear();
-                self.inputs.clear();
+                self.stop();
                 let span = place.map_or(Span::NONE, |p| self.table.aside(p, crate::source::NO_CALL));
                 self.diagnostics.push(
-                    Diagnostic::error("E0114", span, format!("macros and includes produce more than {BUDGET} tokens"))
+                    Diagnostic::error("E0114", span, format!("macros and includes produce more than {TOKENS} tokens"))
                         .label("the limit was passed here")
                         .help("look for macros that repeat their argument and call each other, or a file that includes itself"),
                 );

@@ -65,20 +65,7 @@ fn strength(expr: &Expr) -> u8 {
 }
 
 fn binary_strength(op: BinaryOp) -> u8 {
-    use BinaryOp::*;
-    let tightness = match op {
-        Or => 0,
-        And => 1,
-        BitOr => 2,
-        BitXor => 3,
-        BitAnd => 4,
-        Eq | Ne => 5,
-        Lt | Le | Gt | Ge => 6,
-        Shl | Shr => 7,
-        Add | Sub => 8,
-        Mul | Div | Mod => 9,
-    };
-    level::OR + tightness
+    level::OR + op.tightness()
 }
 
 fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
@@ -89,7 +76,7 @@ fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
         ExprKind::Float(value) if value.is_infinite() => vec![text("1e99")],
         ExprKind::Float(value) => vec![text(format!("{value:?}"))],
         ExprKind::String(value) => vec![text(quoted(value))],
-        ExprKind::Name(name) => vec![text(name)],
+        ExprKind::Name(name) => vec![text(name.as_str())],
         ExprKind::Unary(op, a) => prefixed(op.symbol(), a),
         ExprKind::Binary(op, a, b) => {
             let level = binary_strength(*op);
@@ -124,7 +111,7 @@ fn pieces(expr: &Expr) -> Vec<Piece<'_>> {
             // `1.x` would be a malformed number.
             let number = matches!(a.kind, ExprKind::Int(_) | ExprKind::Float(_));
             let (open, close) = if number { ("(", ")") } else { ("", "") };
-            vec![text(open), Piece::Expr(a, level::POSTFIX), text(close), text("."), text(&name.name)]
+            vec![text(open), Piece::Expr(a, level::POSTFIX), text(close), text("."), text(name.name.as_str())]
         }
         ExprKind::InitList(list) => listed("{", list, "}"),
         ExprKind::Error => vec![text("<error>")],

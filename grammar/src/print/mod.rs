@@ -114,7 +114,7 @@ impl Printer {
         if param.output {
             self.out.push_str("output ");
         }
-        self.declarator(&param.ty, &param.name, param.array, param.default.as_ref());
+        self.declarator(&param.ty, &param.name, param.array, param.default.as_deref());
         self.metadata(&param.metadata);
     }
 
@@ -245,10 +245,10 @@ impl Printer {
             StmtKind::Declare(list) => {
                 for (i, decl) in list.iter().enumerate() {
                     match i {
-                        0 => self.declarator(&decl.ty, &decl.name, decl.array, decl.init.as_ref()),
+                        0 => self.declarator(&decl.ty, &decl.name, decl.array, decl.init.as_deref()),
                         _ => {
                             self.out.push_str(", ");
-                            self.named(&decl.name, decl.array, decl.init.as_ref());
+                            self.named(&decl.name, decl.array, decl.init.as_deref());
                         }
                     }
                 }

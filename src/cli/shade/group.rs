@@ -4,10 +4,12 @@ use super::options::{Options, Step, Value};
 use crate::cli::failure::Failure;
 use crate::cli::speak::say;
 use crate::compile::Compiler;
+use crate::limits::SCENE_BYTES;
 use crate::scene::{
     Connection, GroupSpec, Hints, Layer, ParamType, ParamValue, Place, Places, ShaderFiles, Usage, Values, parse_group,
 };
 use std::path::PathBuf;
+use velour_grammar::files::Access;
 
 /// The group as written, and the compiler that knows its shaders.
 pub fn group(options: &Options, compiler: Compiler) -> Result<(GroupSpec, ShaderFiles), Failure> {
@@ -43,7 +45,7 @@ pub fn group(options: &Options, compiler: Compiler) -> Result<(GroupSpec, Shader
                 if options.verbose {
                     say(&format!("Processing group specification:\n---\n{text}\n---\n"));
                 }
-                add_text(text, &mut spec)?;
+                add_text(text, &mut spec, &files.compiler.options.access)?;
                 continue;
             }
             Step::Expr(code) => {
@@ -167,11 +169,17 @@ fn connection(from: &str, output: &str, to: &str, input: &str) -> Connection {
 }
 
 /// Adds the layers and connections of a text, or of a file that has it.
-fn add_text(text: &str, spec: &mut GroupSpec) -> Result<(), Failure> {
+fn add_text(text: &str, spec: &mut GroupSpec, access: &Access) -> Result<(), Failure> {
     let file = std::path::Path::new(text);
-    let (name, text) = match std::fs::read_to_string(file) {
-        Ok(read) => (text.to_owned(), read),
-        Err(_) => ("--group".to_owned(), text.to_owned()),
+    // A text of several statements is no name, however it may look.
+    let named = !text.contains([';', '\n']) && file.exists();
+    let (name, text) = match named {
+        true => {
+            let unread = |error: String| Failure::Usage(format!("{text}: error: cannot be read: {error}"));
+            let bytes = access.read(file, SCENE_BYTES).map_err(|error| unread(error.to_string()))?;
+            (text.to_owned(), String::from_utf8(bytes).map_err(|_| unread("it is not UTF-8 text".to_owned()))?)
+        }
+        false => ("--group".to_owned(), text.to_owned()),
     };
     let places = Places::new(&name.as_str().into(), &text);
     let statements =

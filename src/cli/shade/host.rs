@@ -10,6 +10,7 @@ use crate::scene::{ParamValue, Values};
 use crate::texture::{Texture, TextureError, TextureFiles};
 use std::collections::HashMap;
 use std::sync::Arc;
+use velour_grammar::files::Access;
 
 /// Spaces and values around the patch.
 #[derive(Debug)]
@@ -28,7 +29,7 @@ impl PatchHost {
     ///
     /// # Errors
     /// A value of `--userdata` that cannot be read.
-    pub fn new(options: &Options) -> Result<Self, Failure> {
+    pub fn new(options: &Options, access: Access) -> Result<Self, Failure> {
         let mut attributes = camera_attributes(options.res, 90.0, CLIP, [0.0, 1.0]);
         // OSL's tests ask for it.
         attributes.insert("options.blahblah".to_owned(), Attribute::Floats(vec![std::f32::consts::PI]));
@@ -37,7 +38,7 @@ impl PatchHost {
             res: options.res,
             attributes,
             userdata: userdata?,
-            textures: TextureFiles::new(options.path.clone()),
+            textures: TextureFiles::new(options.path.clone()).with_access(access),
         })
     }
 }

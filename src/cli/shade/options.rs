@@ -76,6 +76,12 @@ pub struct Options {
     pub unoptimized: bool,
     /// Count parameters that userdata may fill as connected.
     pub userdata_isconnected: bool,
+    /// Seconds that this may take.
+    pub time: Option<f64>,
+    /// Bytes that this may hold.
+    pub memory: Option<u64>,
+    /// The folder that everything read has to lie in.
+    pub sandbox: Option<PathBuf>,
     /// Tell more.
     pub verbose: bool,
     /// Tell instructions and times.
@@ -102,6 +108,14 @@ pub struct Options {
     pub help: bool,
 }
 
+impl Options {
+    /// Is a setting of OSL's on, as the last word on it says?
+    pub fn is_set(&self, name: &str, otherwise: bool) -> bool {
+        let last = self.settings.iter().rev().find(|(known, _)| known == name);
+        last.map_or(otherwise, |(_, value)| value != "0")
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Options {
@@ -123,6 +137,9 @@ impl Default for Options {
             colorspace: WorkingSpace::default(),
             unoptimized: false,
             userdata_isconnected: false,
+            time: None,
+            memory: None,
+            sandbox: None,
             verbose: false,
             stats: false,
             groupname: String::new(),
@@ -174,6 +191,9 @@ const KNOWN: &[Known] = &[
     (&["debugnan"], &[], "Report what shaders assign and is no finite number"),
     (&["O0"], &[], "Compile without optimising"),
     (&["options"], &["LIST"], "Settings of OSL's shading system; those with a meaning here: searchpath:shader"),
+    (&["time"], &["S"], "End with an error when this takes more than S seconds"),
+    (&["memory"], &["BYTES"], "Bytes that this may hold, such as 2G or 512M; it ends when it needs more"),
+    (&["sandbox"], &["DIR"], "Read no file outside of this folder, whatever input names"),
     (&["stats", "runstats"], &[], "Print instructions before and after optimising, and time a point"),
     (&["v"], &[], "Print the group and what is done"),
     (&["h", "help"], &[], "Print this"),
@@ -302,6 +322,9 @@ fn apply(name: &str, modifiers: &str, given: &[String], options: &mut Options) -
         "debugnan" => options.watch = true,
         "O0" => options.unoptimized = true,
         "options" => settings(&given[0], options),
+        "time" => options.time = Some(number(&given[0])?),
+        "memory" => options.memory = Some(crate::cli::watch::bytes(&given[0]).map_err(usage)?),
+        "sandbox" => options.sandbox = Some(PathBuf::from(&given[0])),
         "stats" => options.stats = true,
         "v" => options.verbose = true,
         "h" => options.help = true,

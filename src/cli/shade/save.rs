@@ -1,10 +1,10 @@
 //! Outputs of a grid as image files: EXR, TIFF, PNG and HDR, of any number of channels where the format has them.
 
+use crate::files::{Destination, Sink};
 use crate::render::output::srgb;
 use exr::prelude as exr;
 use image::{ExtendedColorType, ImageEncoder};
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 use tiff::encoder::{TiffEncoder, colortype};
 
@@ -49,13 +49,20 @@ pub struct Grid {
 /// Writes a grid to a file of the kind that its name ends with.
 pub fn save(grid: &Grid, path: &Path, numbers: Option<Numbers>) -> Result<(), String> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let open = || File::create(path).map(BufWriter::new).map_err(|error| error.to_string());
-    match extension.as_str() {
-        "exr" => save_exr(grid, open()?, numbers),
-        "tif" | "tiff" | "tx" => save_tiff(grid, open()?, numbers),
-        "png" => save_png(grid, open()?),
-        "hdr" => save_hdr(grid, open()?),
-        _ => Err("its name ends with none of .exr, .tif, .png and .hdr".to_owned()),
+    if !["exr", "tif", "tiff", "tx", "png", "hdr"].contains(&extension.as_str()) {
+        return Err("its name ends with none of .exr, .tif, .png and .hdr".to_owned());
+    }
+    let written = Destination::at(path)
+        .and_then(|file| file.write(|sink| encode(grid, sink, &extension, numbers).map_err(std::io::Error::other)));
+    written.map_err(|error| error.to_string())
+}
+
+fn encode(grid: &Grid, sink: &mut Sink, extension: &str, numbers: Option<Numbers>) -> Result<(), String> {
+    match extension {
+        "exr" => save_exr(grid, sink, numbers),
+        "png" => save_png(grid, sink),
+        "hdr" => save_hdr(grid, sink),
+        _ => save_tiff(grid, sink, numbers),
     }
 }
 
@@ -68,7 +75,7 @@ fn channel_name(at: usize, of: usize) -> String {
     }
 }
 
-fn save_exr(grid: &Grid, mut writer: BufWriter<File>, numbers: Option<Numbers>) -> Result<(), String> {
+fn save_exr(grid: &Grid, mut writer: &mut Sink, numbers: Option<Numbers>) -> Result<(), String> {
     use exr::WritableImage;
     let column = |channel: usize| grid.values.iter().skip(channel).step_by(grid.channels).copied();
     let channel = |at: usize| {
@@ -89,7 +96,7 @@ fn byte(x: f32) -> u8 {
     (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 
-fn save_tiff(grid: &Grid, writer: BufWriter<File>, numbers: Option<Numbers>) -> Result<(), String> {
+fn save_tiff(grid: &Grid, writer: &mut Sink, numbers: Option<Numbers>) -> Result<(), String> {
     let [width, height] = grid.size;
     let mut encoder = TiffEncoder::new(writer).map_err(|error| error.to_string())?;
     let kept = |x: f32| if grid.ints { x.clamp(0.0, 255.0) as u8 } else { byte(x) };
@@ -112,7 +119,7 @@ fn save_tiff(grid: &Grid, writer: BufWriter<File>, numbers: Option<Numbers>) -> 
 }
 
 /// One or three channels; a picture that people look at is in sRGB, as testshade saves it.
-fn save_png(grid: &Grid, writer: BufWriter<File>) -> Result<(), String> {
+fn save_png(grid: &Grid, writer: &mut Sink) -> Result<(), String> {
     let [width, height] = grid.size;
     let bytes: Vec<u8> = grid.values.iter().map(|&x| byte(srgb(x))).collect();
     let kind = match grid.channels {
@@ -124,7 +131,7 @@ fn save_png(grid: &Grid, writer: BufWriter<File>) -> Result<(), String> {
     encoder.write_image(&bytes, width, height, kind).map_err(|error| error.to_string())
 }
 
-fn save_hdr(grid: &Grid, writer: BufWriter<File>) -> Result<(), String> {
+fn save_hdr(grid: &Grid, writer: &mut Sink) -> Result<(), String> {
     if grid.channels != 3 {
         return Err(format!("an HDR has three channels, not {}", grid.channels));
     }

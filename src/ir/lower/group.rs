@@ -43,7 +43,9 @@ impl Lower<'_> {
         }
         let value = if interpolated { self.userdata(&name, value) } else { value };
         self.bind(var, value);
-        for (target, binding) in layer.bindings.iter().filter(|(target, _)| *target != name && root(target) == name) {
+        for (target, binding) in
+            layer.bindings.iter().filter(|(target, _)| *target != name && root(target) == name.as_str())
+        {
             self.bind_part(var, &ty, target, binding);
         }
     }
@@ -248,7 +250,7 @@ impl Lower<'_> {
             if param.open {
                 ty.length = Length::Fixed(value.count() as u32);
             }
-            out.insert(variable.name.clone(), (value, ty));
+            out.insert(variable.name.to_string(), (value, ty));
         }
         out
     }
@@ -261,8 +263,8 @@ impl Lower<'_> {
     ) {
         for param in self.shader.params.iter().filter(|param| param.output) {
             let name = &self.shader.variables[param.var.0 as usize].name;
-            if let Some((value, ty)) = params.get(name) {
-                list_value(&layer.name, name.clone(), value, ty, outputs);
+            if let Some((value, ty)) = params.get(name.as_str()) {
+                list_value(&layer.name, name.to_string(), value, ty, outputs);
             }
         }
     }

@@ -65,7 +65,7 @@ impl Shared<'_> {
         let shader = &self.layers[number].shader;
         let outputs = shader.params.iter().filter(|param| param.output);
         let names = outputs.map(|param| &shader.variables[param.var.0 as usize].name);
-        let mut closures = names.filter_map(|name| params.get(name)).filter(|(_, ty)| *ty == Type::CLOSURE);
+        let mut closures = names.filter_map(|name| params.get(name.as_str())).filter(|(_, ty)| *ty == Type::CLOSURE);
         match (closures.next(), closures.next()) {
             (Some((Value::Regs(regs), _)), None) => regs.first().copied(),
             _ => None,
@@ -158,7 +158,7 @@ impl<'a> Lower<'a> {
         let fed: Vec<(&String, usize)> = layer
             .bindings
             .iter()
-            .filter(|(target, _)| root(target) == name)
+            .filter(|(target, _)| root(target) == name.as_str())
             .filter_map(|(target, binding)| match binding {
                 Binding::Connection(from, _) => Some((target, *from)),
                 Binding::Numbers(_) | Binding::Strings(_) => None,

@@ -10,6 +10,9 @@ use velour_grammar::Span;
 impl Lower<'_> {
     pub(super) fn stmts(&mut self, stmts: &[Stmt]) {
         for stmt in stmts {
+            if self.b.is_full() {
+                return;
+            }
             self.stmt(stmt);
         }
     }
@@ -36,8 +39,8 @@ impl Lower<'_> {
             Stmt::If(condition, then, otherwise) => self.if_stmt(condition, then, otherwise),
             Stmt::Loop { init, condition, step, body, test_last, span } => {
                 self.stmts(init);
-                let tested = (condition.as_ref(), *test_last);
-                self.loop_stmt(tested, step.as_ref(), body, *span);
+                let tested = (condition.as_deref(), *test_last);
+                self.loop_stmt(tested, step.as_deref(), body, *span);
             }
             Stmt::Break => {
                 if let Some(&(scope, _)) = self.loops.last() {

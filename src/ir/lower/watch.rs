@@ -26,7 +26,7 @@ impl Lower<'_> {
                 let regs = self.regs(value);
                 let floats = regs.iter().all(|&reg| self.b.program.kind(reg) == Kind::Float);
                 if floats && !regs.is_empty() {
-                    let variable = self.shader.variables[var.0 as usize].name.clone();
+                    let variable = self.shader.variables[var.0 as usize].name.to_string();
                     let watch = Watch { variable, operation, count: regs.len() as u32 };
                     self.at(span);
                     self.b.call(Routine::CheckFinite(Box::new(watch)), regs, self.span);

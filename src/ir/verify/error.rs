@@ -3,6 +3,7 @@
 use crate::ir::op::{Input, Pair};
 use crate::ir::program::*;
 use crate::lang::closures::ClosureId;
+use crate::limits::INSTRUCTIONS;
 use std::fmt;
 
 /// Why a program cannot be run.
@@ -130,7 +131,12 @@ impl fmt::Display for Problem {
             Problem::LeftFromOutside(scope) => write!(f, "scope {} is left from outside", scope.0),
             Problem::OpenedTwice(scope) => write!(f, "scope {} is opened inside itself", scope.0),
             Problem::TooDeep(most) => write!(f, "blocks are nested more than {most} deep"),
-            Problem::TooLarge(most) => write!(f, "the arrays have more than {most} numbers"),
+            Problem::TooLarge(most) => {
+                write!(
+                    f,
+                    "its arrays have more than {most} numbers together, or its code more than {INSTRUCTIONS} instructions"
+                )
+            }
         }
     }
 }

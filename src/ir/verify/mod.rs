@@ -18,12 +18,10 @@ pub use error::{Place, Problem, VerifyError};
 use super::program::*;
 use crate::lang::closures::ClosureTable;
 use crate::lang::symbols::Symbol;
+use crate::limits::NUMBERS;
 
 /// How deep blocks may be nested: the machine calls itself once a level, and a thread's stack is two megabytes.
 pub const MAX_DEPTH: u32 = 2_000;
-
-/// How many numbers all arrays of a program may have together, each of them a column of a batch.
-pub const MAX_NUMBERS: u64 = 1 << 22;
 
 /// Checks a program that calls the closures of a table.
 ///
@@ -78,7 +76,10 @@ impl Walk<'_> {
     }
 
     fn arrays(&self) -> Result<(), VerifyError> {
-        let mut numbers = 0u64;
+        let varying = |info: &&RegInfo| !info.uniform && info.kind != Kind::Closure;
+        let mut numbers = self.program.regs.iter().filter(varying).count() as u64;
+        // A long shader has many registers; what counts is that arrays do not add up.
+        numbers = numbers.saturating_sub(NUMBERS / 2);
         for (number, info) in self.program.arrays.iter().enumerate() {
             let place = Place::Array(ArrayId(number as u32));
             if info.kind == Kind::Closure && info.components != 1 {
@@ -87,8 +88,8 @@ impl Walk<'_> {
                 return Err(VerifyError { problem, place });
             }
             numbers = numbers.saturating_add(u64::from(info.len) * u64::from(info.components));
-            if numbers > MAX_NUMBERS {
-                return Err(VerifyError { problem: Problem::TooLarge(MAX_NUMBERS), place });
+            if numbers > NUMBERS {
+                return Err(VerifyError { problem: Problem::TooLarge(NUMBERS), place });
             }
         }
         Ok(())

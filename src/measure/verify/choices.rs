@@ -55,7 +55,7 @@ fn ranged(shader: &Shader) -> Vec<(String, [f32; 2])> {
         let of = |name: &str| param.metadata.iter().find(|entry| entry.name == name).and_then(value);
         let range = RANGES.iter().find_map(|(low, high)| Some([of(low)?, of(high)?]));
         if let Some([low, high]) = range.filter(|[low, high]| variable.ty == Type::FLOAT && low < high) {
-            out.push((variable.name.clone(), [low, high]));
+            out.push((variable.name.to_string(), [low, high]));
         }
     }
     out
@@ -86,7 +86,7 @@ pub(super) fn surveyed(shader: &Shader, steps: usize) -> Vec<Setting> {
             None => suggested(param, &variable.ty, &compared),
         };
         if !values.is_empty() {
-            out.push(Setting { name: variable.name.clone(), values });
+            out.push(Setting { name: variable.name.to_string(), values });
         }
     }
     out

@@ -28,4 +28,5 @@ pub use examine::{examine, verify};
 pub use finding::{Check, Finding, Line, Report, Verdict};
 pub use shader::ShaderSubject;
 pub use subject::{Promise, Promises, Scatterer, Subject};
+pub use survey::cannot_run;
 pub use tree::{Spot, TreeScatterer};

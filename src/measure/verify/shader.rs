@@ -10,7 +10,7 @@ use super::tree::{Spot, TreeScatterer};
 use crate::closure::Settings;
 use crate::closure::print::tree_text;
 use crate::compile::{GroupError, Shader};
-use crate::exec::{Group, Machine, Points, RAY_TYPES};
+use crate::exec::{Group, Machine, Points, RAY_TYPES, Report};
 use crate::math::columns::Column3;
 use rayon::prelude::*;
 
@@ -187,7 +187,12 @@ fn spots(group: &Group) -> Vec<Spot> {
         for &uv in &places {
             let spot = Spot { uv, back, ..Spot::MIDDLE };
             spot.points(&wo, &mut points);
-            let tree = machine.shade(group, &points);
+            machine.shade(group, &points);
+            if machine.take_reports().iter().any(Report::is_fatal) {
+                out.push(spot);
+                return out;
+            }
+            let tree = machine.tree();
             let text: Vec<String> = (0..views.len()).map(|lane| tree_text(group.table(), tree, lane)).collect();
             if !texts.contains(&text) {
                 texts.push(text);

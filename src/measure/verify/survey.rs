@@ -54,6 +54,17 @@ fn place(index: usize) -> (Spot, View) {
     (spot, View { cos: cos.max(1e-4), azimuth: azimuth * std::f64::consts::TAU })
 }
 
+/// Why a group cannot be run, if that shows at the first places and views.
+pub fn cannot_run(group: &Group) -> Option<Report> {
+    let (mut machine, mut points) = (Machine::new(), Points::new(MAX_LANES));
+    for lane in 0..MAX_LANES {
+        let (spot, view) = place(lane);
+        spot.point(view.wo(), &mut points, lane);
+    }
+    machine.shade(group, &points);
+    machine.take_reports().into_iter().find(Report::is_fatal)
+}
+
 /// What a batch of places has sent out.
 struct Sums {
     sum: Vec<[f64; 3]>,
@@ -79,9 +90,14 @@ pub fn survey(group: &Group, settings: Settings, places: usize) -> Vec<Suspect> 
         let tree = machine.shade(group, &points);
         lobes.flatten_sides(group.library(), tree, &wo, &points.ng, &points.backfacing);
         let wrong = lobes.dropped().iter().map(|dropped| dropped.lane as usize).next();
-        let reported = machine.take_reports().into_iter().find(Report::is_wrong);
+        let reports = machine.take_reports();
+        let fatal = reports.iter().any(Report::is_fatal);
+        let reported = reports.into_iter().find(Report::is_wrong);
         if let (Some(lane), None) = (wrong.or(reported.map(|report| report.lane)), broken) {
             broken = here.get(lane).map(|&(spot, view)| Suspect { spot, view, excess: f64::INFINITY });
+        }
+        if fatal {
+            break;
         }
         let sums = sample(&mut lobes, here.len());
         for (lane, &(spot, view)) in here.iter().enumerate() {

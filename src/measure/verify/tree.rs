@@ -1,8 +1,10 @@
 //! A compiled shader as a scatterer: its closure tree at one point of a surface is what scatters.
 
 use super::subject::Scatterer;
+use crate::closure::tree::Tree;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::exec::{Group, Machine, Points};
+use crate::limits::LOBES;
 use crate::math::columns::Column3;
 use glam::Vec3;
 
@@ -63,6 +65,10 @@ pub struct TreeScatterer {
     points: Points,
     lobes: Lobes,
     complaint: Option<String>,
+    /// The shader cannot be run, so that it is not run again.
+    failed: bool,
+    /// What it has made then.
+    nothing: Tree,
 }
 
 impl std::fmt::Debug for TreeScatterer {
@@ -75,21 +81,31 @@ impl TreeScatterer {
     /// A scatterer of a group.
     pub fn new(group: Group, spot: Spot, settings: Settings) -> Self {
         let (machine, points, lobes) = (Machine::new(), Points::default(), Lobes::new(settings));
-        TreeScatterer { group, spot, machine, points, lobes, complaint: None }
+        TreeScatterer { group, spot, machine, points, lobes, complaint: None, failed: false, nothing: Tree::default() }
     }
 }
 
 impl Scatterer for TreeScatterer {
     fn look(&mut self, wo: &Column3) {
         self.spot.points(wo, &mut self.points);
-        let tree = self.machine.shade(&self.group, &self.points);
+        let tree = match self.failed {
+            false => self.machine.shade(&self.group, &self.points),
+            true => {
+                self.nothing.clear(self.points.len);
+                &self.nothing
+            }
+        };
         let Points { ng, backfacing, .. } = &self.points;
         self.lobes.flatten_sides(self.group.library(), tree, wo, ng, backfacing);
         if let (Some(dropped), None) = (self.lobes.dropped().first(), &self.complaint) {
             let place = tree.site(dropped.node).map_or(String::new(), |site| format!("{}: ", self.group.place(site)));
             self.complaint = Some(format!("{place}`{}` has a parameter or weight that is no number", dropped.closure));
         }
+        if let (Some(_), None) = (self.lobes.crowded(), &self.complaint) {
+            self.complaint = Some(format!("a batch has more than {LOBES} lobes, or layers over them"));
+        }
         for report in self.machine.take_reports() {
+            self.failed |= report.is_fatal();
             if report.is_wrong() && self.complaint.is_none() {
                 self.complaint = Some(report.to_string());
             }

@@ -7,8 +7,6 @@ use std::f32::consts::PI;
 
 /// Steps along a side of what has no triangles of its own, where its element does not say: testrender's.
 const RESOLUTION: u32 = 64;
-/// The most triangles that may be moved; each takes some 400 bytes on the way.
-pub const MOST_FACETS: u64 = 8_000_000;
 
 /// Steps around or along and down or across that a primitive without triangles of its own is cut into.
 fn steps(of: &Geometry, number: usize) -> [u32; 2] {

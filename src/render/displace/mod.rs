@@ -19,10 +19,12 @@ use super::points::fill;
 use super::probe::probe;
 use super::segment::{Segment, ray_type};
 use super::settings::Settings;
+use super::stop::Stop;
 use super::told::Told;
 use crate::exec::{Group, Host, MAX_LANES, Machine, Points, Report, ReportPlace, Values};
+use crate::limits::MADE_TRIANGLES;
 use crate::scene::{Geometry, Material, Place, Primitive, Scene, Shape};
-use facets::{MOST_FACETS, add_as_it_is, add_facets, facets_of};
+use facets::{add_as_it_is, add_facets, facets_of};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -31,8 +33,8 @@ use std::sync::Arc;
 /// The scene with its surfaces moved, where something moves them, and what shaders said meanwhile.
 ///
 /// # Errors
-/// The surfaces that are moved take more than [`MOST_FACETS`] triangles.
-pub fn displaced(scene: &Scene, settings: &Settings) -> Result<(Scene, Vec<Report>), RenderError> {
+/// The surfaces that are moved take more than [`MADE_TRIANGLES`] triangles.
+pub fn displaced(scene: &Scene, settings: &Settings, stop: &Arc<Stop>) -> Result<(Scene, Vec<Report>), RenderError> {
     let mut scene = scene.clone();
     let moves = |material: &Material| material.displacement.is_some();
     let moved: Vec<bool> =
@@ -43,11 +45,11 @@ pub fn displaced(scene: &Scene, settings: &Settings) -> Result<(Scene, Vec<Repor
     let primitives = scene.geometry.primitives.iter().enumerate();
     let facets = primitives.filter(|(_, p)| moved[p.object as usize]).map(|(at, _)| facets_of(&scene.geometry, at));
     let facets = facets.fold(0, u64::saturating_add);
-    if facets > MOST_FACETS {
-        return Err(RenderError::Facets { facets, most: MOST_FACETS });
+    if facets > MADE_TRIANGLES {
+        return Err(RenderError::Facets { facets, most: MADE_TRIANGLES });
     }
     let mut geometry = in_facets(&scene.geometry, &moved);
-    let host: Arc<dyn Host> = Arc::new(host(&scene.camera, settings, &scene.textures, None));
+    let host: Arc<dyn Host> = Arc::new(host(&scene.camera, settings, &scene.textures, None).until(stop));
     let (targets, mut reports) = targets(&scene, &geometry, &moved, &host);
     let lost = move_corners(&mut geometry, &moved, &targets);
     if lost > 0 {

@@ -1,6 +1,7 @@
 //! Scattering: where each path of the batch goes on, if it does.
 
 use crate::closure::event;
+use crate::limits::ROULETTE;
 use crate::render::accel::Hit;
 use crate::render::crossing::{Crossing, MOST_PASSED};
 use crate::render::path::Path;
@@ -14,10 +15,6 @@ use glam::Vec3;
 /// wide side, for they only choose how much a texture is blurred.
 const DIFFUSE_SPREAD: f32 = 1.0;
 const GLOSSY_SPREAD: f32 = 0.25;
-
-/// Beyond this bounce roulette ends even paths that lose nothing, or a white closed room would never be done. What an albedo of
-/// .999 has left by then is less than 1e-4; sooner, the few paths that survive would weigh more and more.
-const DEEP: u32 = 10_000;
 
 /// Samples a direction for each path and sends on those that still carry something.
 pub fn scatter(world: &World, wave: &mut Wave) {
@@ -68,9 +65,9 @@ fn send<const REMEMBERS: bool>(world: &World, wave: &mut Wave) {
         if path.clear {
             path.alpha = 1.0 - (throughput.element_sum() / 3.0).min(1.0);
         }
-        if bounces >= world.settings.rr_depth && !passes {
+        if bounces >= world.settings.rr_depth.min(ROULETTE) && !passes {
             // A path that loses a factor a bounce survives with it, so its weight stays.
-            let survival = carried.min(if bounces > DEEP { 0.95 } else { 1.0 });
+            let survival = carried.min(if bounces > ROULETTE { 0.95 } else { 1.0 });
             if lanes.draws.numbers[3][lane] >= survival {
                 continue;
             }
@@ -99,7 +96,7 @@ fn send<const REMEMBERS: bool>(world: &World, wave: &mut Wave) {
 fn draw(world: &World, wave: &mut Wave) {
     let Wave { lanes, shading, .. } = wave;
     // A path of a scene with clear surfaces may have fewer bounces behind it than the wave, never more.
-    let roulette = lanes.bounce >= world.settings.rr_depth;
+    let roulette = lanes.bounce >= world.settings.rr_depth.min(ROULETTE);
     lanes.draws.draw(dimension_set(lanes.bounce, Use::Scatter), if roulette { 4 } else { 3 });
     let random = &mut shading.random;
     for (column, numbers) in [&mut random.x, &mut random.y, &mut random.z].into_iter().zip(&lanes.draws.numbers) {

@@ -65,6 +65,11 @@ impl ObjMesh {
         &self.corners[start..self.ends[number] as usize]
     }
 
+    /// How many triangles the faces make at most: two fewer than corners each.
+    pub fn triangles(&self) -> u64 {
+        (self.corners.len() as u64).saturating_sub(2 * self.ends.len() as u64)
+    }
+
     /// How many vertices of a kind there are.
     #[inline]
     pub fn count(&self, attribute: Attribute) -> usize {

@@ -10,13 +10,13 @@ use glam::{DVec2, DVec3, Vec3};
 /// Appends the triangles of the polygon `points`, as indices of three corners in the polygon's order.
 ///
 /// A polygon that crosses itself gives some triangles, at most two less than corners; those without area are left out
-/// unless the polygon is a fan.
-pub fn triangulate(points: &[Vec3], out: &mut Vec<[u32; 3]>) {
+/// unless the polygon is a fan. Looking for corners to cut takes steps; when none are left, the rest is cut anyhow.
+pub fn triangulate(points: &[Vec3], steps: &mut u64, out: &mut Vec<[u32; 3]>) {
     if points.len() > 3
         && let Some(flat) = flatten(points)
         && !is_convex(&flat)
     {
-        return Ears::new(&flat).cut(out);
+        return Ears::new(&flat).cut(steps, out);
     }
     out.extend((2..points.len() as u32).map(|k| [0, k - 1, k]));
 }
@@ -116,11 +116,13 @@ impl<'a> Ears<'a> {
         })
     }
 
-    fn cut(mut self, out: &mut Vec<[u32; 3]>) {
+    fn cut(mut self, steps: &mut u64, out: &mut Vec<[u32; 3]>) {
         let (mut corner, mut left, mut seen) = (0, self.flat.len(), 0);
         while left > 3 {
             // When no corner is an ear, the polygon crosses itself; then any that turns to the left, or any at all.
-            let taken = self.is_ear(corner) || (seen >= left && self.turn_at(corner) > 0.0) || seen >= 2 * left;
+            *steps = steps.saturating_sub(1 + self.hollow.len() as u64);
+            let taken =
+                *steps == 0 || self.is_ear(corner) || (seen >= left && self.turn_at(corner) > 0.0) || seen >= 2 * left;
             let (before, after) = self.neighbours(corner);
             if !taken {
                 corner = after;
@@ -167,7 +169,7 @@ mod tests {
         {
             let points: Vec<Vec3> = flat.iter().map(|p| turned * Vec3::new(p[0], p[1], 0.0)).collect();
             let mut triangles = Vec::new();
-            triangulate(&points, &mut triangles);
+            triangulate(&points, &mut { u64::MAX }, &mut triangles);
             let normal = (turned * Vec3::Z).as_dvec3();
             let one = |t: &[u32; 3]| {
                 let [a, b, c] = t.map(|i| points[i as usize].as_dvec3());
@@ -230,17 +232,17 @@ mod tests {
     #[test]
     fn a_convex_polygon_is_a_fan_and_nothing_hangs_on_a_bad_one() {
         let mut out = Vec::new();
-        triangulate(&[Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y], &mut out);
+        triangulate(&[Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y], &mut { u64::MAX }, &mut out);
         assert_eq!(out, [[0, 1, 2], [0, 2, 3]]);
         for points in [vec![Vec3::ZERO; 5], vec![Vec3::X, Vec3::Y, Vec3::X, Vec3::Y], vec![], vec![Vec3::X]] {
             out.clear();
-            triangulate(&points, &mut out);
+            triangulate(&points, &mut { u64::MAX }, &mut out);
             assert!(out.len() <= points.len().saturating_sub(2));
         }
         // A star of five points, drawn in one stroke.
         let star: Vec<Vec3> = (0..5).map(|k| Quat::from_rotation_z(k as f32 * 2.513_274) * Vec3::X).collect();
         out.clear();
-        triangulate(&star, &mut out);
+        triangulate(&star, &mut { u64::MAX }, &mut out);
         assert!((1..=3).contains(&out.len()));
     }
 }

@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 use std::collections::{BTreeSet, HashMap};
 
 /// The most corners of a face. Cutting ears takes time by the square of them.
-const MOST_CORNERS: usize = 10_000;
+const MOST_CORNERS: usize = crate::limits::CORNERS;
 
 /// Vertices and corners are counted by 32 bits, and the last number stands for none.
 const MOST: usize = u32::MAX as usize - 1;

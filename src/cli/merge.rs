@@ -1,0 +1,74 @@
+//! `velour merge`: parts of a picture in, the picture out.
+
+use super::failure::Failure;
+use super::speak::tell;
+use crate::render::output;
+use crate::render::part::{self, Part, Ranges};
+use std::path::PathBuf;
+
+/// Arguments of `velour merge`.
+#[derive(clap::Args)]
+pub struct MergeArgs {
+    /// The parts, as `velour render --samples` and stopped renders leave them
+    #[arg(required = true, value_name = "PART")]
+    parts: Vec<PathBuf>,
+    /// The picture: an .exr is a part as well, which more can be merged with; .png and .hdr are not
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Refuse parts that do not hold these samples, such as 0..128, together
+    #[arg(long, value_name = "A..B")]
+    samples: Option<Ranges>,
+    /// Leave the sums out of an .exr: the file of a plain render, which nothing can be added to
+    #[arg(long)]
+    picture: bool,
+}
+
+/// Merges parts and writes the picture.
+pub fn run(args: &MergeArgs) -> Result<(), Failure> {
+    let format = output::check(&args.output).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    let mut merged: Option<Part> = None;
+    for path in &args.parts {
+        let part = part::read(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+        merged = Some(match merged {
+            None => part,
+            Some(mut all) => {
+                let place = |error| Failure::Wrong(format!("error: {}: {error}", path.display()));
+                all.merge(part).map_err(place)?;
+                all
+            }
+        });
+    }
+    let Some(part) = merged else { return Ok(()) };
+    complete(args, &part)?;
+    let written = if args.picture || format != output::Format::Exr {
+        output::write(&part.picture(), &args.output)
+    } else {
+        part::write(&part, &args.output)
+    };
+    written.map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    tell(&format!("{}: {} x {}, {}\n", args.output.display(), part.of.width, part.of.height, part.summary()));
+    Ok(())
+}
+
+/// Says which samples are missing: those that were asked for, which is a failure, or those between the others.
+fn complete(args: &MergeArgs, part: &Part) -> Result<(), Failure> {
+    let common = part.common();
+    let gaps = |wanted: &Ranges| {
+        let mut gaps = Ranges::default();
+        wanted.iter().for_each(|range| common.missing(range.clone()).iter().for_each(|gap| gaps.insert(gap.clone())));
+        gaps
+    };
+    let missing = match &args.samples {
+        Some(wanted) => gaps(wanted),
+        None => gaps(&Ranges::of(0..part.held.iter().map(Ranges::end).max().unwrap_or(0))),
+    };
+    if missing.is_empty() {
+        return Ok(());
+    }
+    if args.samples.is_some() {
+        let help = "help: render them with --samples and merge that too";
+        return Err(Failure::Wrong(format!("error: samples {missing} are missing\n  {help}")));
+    }
+    tell(&format!("warning: samples {missing} are missing\n"));
+    Ok(())
+}

@@ -1,0 +1,283 @@
+//! Sums of light that are the same bits in whatever order their terms come.
+//!
+//! Every term is rounded to a grid of a power of two before it is added, as an integer, so that no sum rounds. Source: pre-rounding,
+//! Demmel and Nguyen 2013. One grid cannot hold both starlight and a sun, so there are tiers of grids, 2^30 apart; the largest
+//! channel of a sample says which tier it goes to, and a tier takes memory from its first sample on. Nearly all pictures have one:
+//! tier 0 takes what lies between 2^-19 and 2^11, in steps of 2^-36.
+//!
+//! Decision (2026-11-29): tiers that every sample finds by itself, instead of one grid chosen from the exposure of the picture,
+//! because then parts of a picture need not agree on an exposure before they have seen it, and none is too bright or too dark.
+
+use std::ops::Range;
+
+/// Red, green, blue, alpha and weight.
+pub const PARTS: usize = 5;
+
+/// Powers of two between the grids of two tiers.
+const STEP: i32 = 30;
+
+/// The grid of tier 0 is 2 to the minus this.
+const FRACTION: i32 = 36;
+
+/// The least power of two that is too large for tier 0: eleven bits above one leave 2^16 terms of 47 bits for a sum.
+const TOP: i32 = 11;
+
+/// The tiers that samples go to: from below the least single to above the largest.
+const TIERS: Range<i32> = -5..5;
+
+/// Samples a pixel after which what a sum has above its tier is carried to the next: a sample adds to a pixel, from all pixels
+/// around it, four times its light at the most.
+pub const SETTLE: u32 = 1 << 12;
+
+/// A double of this size has integers for its last bits, so that adding it rounds to one.
+const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+
+/// A row of sums, in one tier.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tier {
+    /// Its number.
+    pub number: i32,
+    /// The sums in units of its grid.
+    pub sums: Vec<[i64; PARTS]>,
+}
+
+/// A row of exact sums; tier 0 is first and always there.
+#[derive(Clone, Debug, Default)]
+pub struct Sums {
+    tiers: Vec<Tier>,
+}
+
+impl Sums {
+    /// Makes room for `len` sums; what is there stays.
+    pub fn open(&mut self, len: usize) {
+        if self.tiers.is_empty() {
+            self.tiers.push(Tier { number: 0, sums: vec![[0; PARTS]; len] });
+        }
+    }
+
+    /// Adds light, alpha and a weight of one to the sums of two by two pixels: those at `first` and the next one, and of the row
+    /// behind, `row` further; each multiplied by the weights of its column and row, 0..1.
+    #[inline]
+    pub fn splat(&mut self, first: usize, row: usize, columns: [f64; 2], rows: [f64; 2], light: [f32; 3], alpha: f32) {
+        // What amplifies without end would make a sum of alpha overflow.
+        let alpha = f64::from(alpha.clamp(-2048.0, 2048.0));
+        let place = Place { first, row, columns, rows };
+        let most = light[0].abs().max(light[1].abs()).max(light[2].abs());
+        let [r, g, b] = light.map(f64::from);
+        if most == 0.0 || (most >= power(TOP - STEP) as f32 && most < power(TOP) as f32) {
+            add(&mut self.tiers[0].sums, &place, [r, g, b, alpha, 1.0].map(|x| x * power(FRACTION)));
+        } else {
+            self.splat_elsewhere(&place, [r, g, b], alpha, most);
+        }
+    }
+
+    /// How many sums there are.
+    pub fn len(&self) -> usize {
+        self.tiers.first().map_or(0, |tier| tier.sums.len())
+    }
+
+    /// [`splat`](Sums::splat) for light that is too strong or too weak for tier 0.
+    #[cold]
+    fn splat_elsewhere(&mut self, place: &Place, [r, g, b]: [f64; 3], alpha: f64, most: f32) {
+        add(&mut self.tiers[0].sums, place, [0.0, 0.0, 0.0, alpha, 1.0].map(|x| x * power(FRACTION)));
+        let number = (exponent(most) - (TOP - STEP)).div_euclid(STEP).clamp(TIERS.start, TIERS.end - 1);
+        let scale = power(FRACTION - STEP * number);
+        add(&mut self.tier(number).sums, place, [r, g, b, 0.0, 0.0].map(|x| x * scale));
+    }
+
+    /// The tier of a number, made where there is none.
+    fn tier(&mut self, number: i32) -> &mut Tier {
+        let at = self.tiers.iter().position(|tier| tier.number == number).unwrap_or_else(|| {
+            let len = self.len();
+            self.tiers.push(Tier { number, sums: vec![[0; PARTS]; len] });
+            self.tiers.len() - 1
+        });
+        &mut self.tiers[at]
+    }
+
+    /// Carries what a sum has above its tier to the next one, so that there is room for more.
+    pub fn settle(&mut self) {
+        for number in TIERS.start..=TIERS.end {
+            let Some(at) = self.tiers.iter().position(|tier| tier.number == number) else { continue };
+            let carried: Vec<[i64; PARTS]> =
+                self.tiers[at].sums.iter_mut().map(|sum| sum.each_mut().map(carry)).collect();
+            if carried.iter().any(|carried| *carried != [0; PARTS]) {
+                let above = &mut self.tier(number + 1).sums;
+                above.iter_mut().zip(carried).for_each(|(sum, more)| (0..PARTS).for_each(|k| sum[k] += more[k]));
+            }
+        }
+    }
+
+    /// Adds what `other`, of the same length, holds, and empties it.
+    pub fn drain(&mut self, other: &mut Sums) {
+        for tier in &mut other.tiers {
+            let sums = &mut self.tier(tier.number).sums;
+            for (sum, more) in sums.iter_mut().zip(&mut tier.sums) {
+                (0..PARTS).for_each(|k| sum[k] += std::mem::take(&mut more[k]));
+            }
+        }
+    }
+
+    /// Adds the sums `from` of `other` to those that begin at `to`.
+    pub fn add_some(&mut self, to: usize, other: &Sums, from: Range<usize>) {
+        for tier in &other.tiers {
+            let sums = &mut self.tier(tier.number).sums[to..to + from.len()];
+            for (sum, more) in sums.iter_mut().zip(&tier.sums[from.clone()]) {
+                (0..PARTS).for_each(|k| sum[k] += more[k]);
+            }
+        }
+    }
+
+    /// One sum as numbers: a function of its exact value alone.
+    pub fn value(&self, i: usize) -> [f64; PARTS] {
+        if let [only] = &self.tiers[..] {
+            let sum = only.sums[i];
+            if sum.iter().all(|sum| sum.unsigned_abs() < 1 << 53) {
+                return sum.map(|sum| sum as f64 * power(-FRACTION));
+            }
+        }
+        std::array::from_fn(|part| self.value_of(i, part))
+    }
+
+    /// The tiers, the settled sums of which are a function of their exact values: those that hold anything, and tier 0; by number.
+    pub fn settled(mut self) -> Vec<Tier> {
+        self.settle();
+        self.tiers.retain(|tier| tier.number == 0 || tier.sums.iter().any(|sum| *sum != [0; PARTS]));
+        self.tiers.sort_unstable_by_key(|tier| tier.number);
+        self.tiers
+    }
+
+    /// Sums of the tiers of [`settled`](Sums::settled), all of one length.
+    pub fn of(tiers: Vec<Tier>) -> Option<Self> {
+        let [first, rest @ ..] = &tiers[..] else { return None };
+        let numbers = tiers.iter().map(|tier| tier.number);
+        let even = rest.iter().all(|tier| tier.sums.len() == first.sums.len());
+        let known = numbers.clone().all(|number| (TIERS.start..=TIERS.end + 1).contains(&number));
+        let apart =
+            numbers.clone().enumerate().all(|(i, number)| numbers.clone().skip(i + 1).all(|other| other != number));
+        let room = tiers.iter().flat_map(|tier| tier.sums.iter().flatten()).all(|sum| sum.unsigned_abs() < 1 << 61);
+        let at = tiers.iter().position(|tier| tier.number == 0)?;
+        let mut sums = Sums { tiers };
+        sums.tiers.swap(0, at);
+        (even && known && apart && room).then_some(sums)
+    }
+
+    /// The digits of a sum, from the highest on, in as many roundings as there are digits.
+    fn value_of(&self, i: usize, part: usize) -> f64 {
+        const COUNT: usize = (TIERS.end - TIERS.start) as usize + 3;
+        let mut digits = [0i64; COUNT];
+        for tier in &self.tiers {
+            digits[(tier.number - TIERS.start) as usize] = tier.sums[i][part];
+        }
+        for k in 0..COUNT - 1 {
+            digits[k + 1] += carry(&mut digits[k]);
+        }
+        let value = digits.iter().rev().fold(0.0, |value, digit| value * power(STEP) + *digit as f64);
+        value * power(STEP * TIERS.start - FRACTION)
+    }
+}
+
+/// Where a sample goes.
+struct Place {
+    first: usize,
+    row: usize,
+    columns: [f64; 2],
+    rows: [f64; 2],
+}
+
+#[inline(always)]
+fn add(sums: &mut [[i64; PARTS]], place: &Place, value: [f64; PARTS]) {
+    for (wy, start) in place.rows.into_iter().zip([place.first, place.first + place.row]) {
+        for (wx, sum) in place.columns.into_iter().zip(&mut sums[start..start + 2]) {
+            let weight = wx * wy;
+            for k in 0..PARTS {
+                let rounded = (weight * value[k] + ROUND).to_bits();
+                sum[k] = sum[k].wrapping_add(rounded.wrapping_sub(ROUND.to_bits()) as i64);
+            }
+        }
+    }
+}
+
+/// Leaves what is nearest to zero and gives the rest in units of the next tier. So small sums of either sign carry nothing.
+fn carry(sum: &mut i64) -> i64 {
+    let above = (*sum + (1 << (STEP - 1))) >> STEP;
+    *sum -= above << STEP;
+    above
+}
+
+/// Two to the power of `k`, which is between -1022 and 1023.
+const fn power(k: i32) -> f64 {
+    f64::from_bits(((1023 + k) as u64) << 52)
+}
+
+/// The power of two of a positive single.
+fn exponent(x: f32) -> i32 {
+    (f64::from(x).to_bits() >> 52) as i32 - 1023
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums of four, of whose light a share of one goes to the first.
+    fn sum(lights: impl IntoIterator<Item = f32>) -> Sums {
+        let mut sums = Sums::default();
+        sums.open(4);
+        lights.into_iter().for_each(|x| sums.splat(0, 2, [1.0, 0.0], [1.0, 0.0], [x, -x, 0.5 * x], 1.0));
+        sums
+    }
+
+    /// Lights of all sizes, from the least singles to the largest, with both signs.
+    fn wild(count: u32) -> Vec<f32> {
+        let number = |i: u32| {
+            let bits = i.wrapping_mul(0x9e37_79b9) ^ (i << 7);
+            let exponent = bits % 254;
+            f32::from_bits((bits & 0x807f_ffff) | (exponent << 23))
+        };
+        (1..=count).map(number).collect()
+    }
+
+    #[test]
+    fn the_order_of_terms_does_not_show_at_any_size() {
+        let lights = wild(3000);
+        let forward = sum(lights.iter().copied()).value(0);
+        let backward = sum(lights.iter().rev().copied()).value(0);
+        assert_eq!(forward.map(f64::to_bits), backward.map(f64::to_bits));
+        // Sums of doubles, the control, do show it.
+        let add = |sum: f64, x: &f32| sum + f64::from(*x);
+        let tame: Vec<f32> = (1..3000u32).map(|i| (i as f32).powi(-3)).collect();
+        assert_ne!(tame.iter().fold(0.0, add), tame.iter().rev().fold(0.0, add));
+    }
+
+    #[test]
+    fn parts_and_carries_do_not_show_either() {
+        let lights = wild(3000);
+        let whole = sum(lights.iter().copied());
+        let mut parts = sum(std::iter::empty());
+        for part in lights.chunks(700).rev() {
+            let mut part = sum(part.iter().copied());
+            part.settle();
+            parts.drain(&mut part);
+            assert_eq!(part.value(0), [0.0; PARTS]);
+            parts.settle();
+        }
+        assert_eq!(whole.value(0).map(f64::to_bits), parts.value(0).map(f64::to_bits));
+        // One tier alone, with and without carries.
+        let mut bright = sum((0..4096).map(|i| 2000.0 + i as f32 / 100.0));
+        let before = bright.value(0);
+        bright.settle();
+        assert_eq!(before.map(f64::to_bits), bright.value(0).map(f64::to_bits));
+    }
+
+    #[test]
+    fn a_sum_is_as_exact_at_any_exposure() {
+        for exponent in [-140, -120, -60, -30, -19, 0, 10, 11, 40, 100, 120] {
+            let scale = power(exponent);
+            let lights: Vec<f32> = (0..100).map(|i| (f64::from(i % 7 + 1) / 8.0 * scale) as f32).collect();
+            let expected: f64 = lights.iter().map(|x| f64::from(*x)).sum();
+            let found = sum(lights).value(0);
+            let off = (found[0] - expected).abs() / expected;
+            assert!(off < 1e-5 && found[4] == 100.0, "2^{exponent}: {off:e}");
+        }
+    }
+}
