@@ -20,7 +20,7 @@ pub struct Image {
 /// How an image was made; the part that its file's header keeps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct About {
-    /// The scene's name.
+    /// The name of the scene's file, without its folder.
     pub scene: String,
     /// Samples a pixel that were asked for, the most of them when the render was to stop by itself.
     pub samples: u32,

@@ -246,7 +246,7 @@ impl Renderer {
         let paths =
             |(number, samples): (usize, u32)| u64::from(Tile::number(settings, number).pixels()) * u64::from(samples);
         About {
-            scene: self.world.scene.name.clone(),
+            scene: file_name(&self.world.scene.name),
             samples: settings.samples,
             taken: [taken().min().unwrap_or(0), taken().max().unwrap_or(0)],
             noise: all.rounds.noise().filter(|_| settings.adapts()),
@@ -289,7 +289,7 @@ impl Renderer {
         let (scene, settings) = (&self.world.scene, &self.world.settings);
         let Settings { width, height, alpha, seed, tile_size, .. } = *settings;
         Whole {
-            scene: scene.name.clone(),
+            scene: file_name(&scene.name),
             fingerprint: *self.fingerprint.get_or_init(|| fingerprint(scene, settings)),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             width,
@@ -382,6 +382,11 @@ impl Renderer {
         self.waves = empty_waves(&self.pool);
         self.gathered = Mutex::new(Gathered::new(&self.world, start));
     }
+}
+
+/// The last name of a path: where a scene lies on this machine is nothing that a picture should tell.
+fn file_name(path: &str) -> String {
+    std::path::Path::new(path).file_name().map_or(path.to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
 fn check_camera(camera: &Camera) -> Result<(), RenderError> {

@@ -4,8 +4,8 @@ use crate::exec::Report;
 use crate::limits::{PRINTED, SAID_BYTES};
 use std::collections::HashSet;
 
-/// How many different reports are kept; a command prints fewer.
-const MOST_REPORTS: usize = 2 * PRINTED;
+/// How many different reports are kept: one more than a command prints, so that it can say that there are more.
+const MOST_REPORTS: usize = PRINTED + 1;
 
 /// The texts of all reports so far.
 #[derive(Debug, Default)]

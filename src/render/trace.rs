@@ -76,14 +76,8 @@ pub fn render_tile(
     wave.shading.go_on();
     let mut first = samples.start;
     while first < samples.end {
-        let mut end = samples.end;
-        if halves > 1 {
-            end = end.min((first + 1).next_power_of_two());
-            if first.is_power_of_two() {
-                sums.join();
-            }
-        }
-        let done = render_part(world, wave, tile, first..end, (halves - 1, sums), stop);
+        let end = if halves > 1 { samples.end.min((first + 1).next_power_of_two()) } else { samples.end };
+        let done = render_part(world, wave, tile, first..end, sums, stop);
         if done < end {
             return done;
         }
@@ -92,7 +86,7 @@ pub fn render_tile(
     first
 }
 
-/// Adds `samples` of each of the tile's pixels to one half of sums, and gives one behind the last that was added.
+/// Adds `samples`, no power of two within them but the first, and gives one behind the last that was added.
 ///
 /// Whole pixels are traced at a time when few samples make a wave, else as many samples of all pixels as fill it. What is begun when
 /// `stop` says so is left out, for a sample that some pixels have and others do not could not be gone on from.
@@ -101,13 +95,15 @@ fn render_part(
     wave: &mut Wave,
     tile: &Tile,
     samples: Range<u32>,
-    (half, sums): (usize, &mut TileSums),
+    sums: &mut TileSums,
     stop: &dyn Fn() -> bool,
 ) -> u32 {
     let wave_size = world.settings.wave_size.max(1) as u32;
     let count = tile.pixels();
     let per_pixel = (wave_size / count).clamp(1, samples.len().max(1) as u32);
     let pixels_at_once = (wave_size / per_pixel).clamp(1, count);
+    let half = world.settings.halves() - 1;
+    let mut joins = half > 0 && samples.start.is_power_of_two();
     for first_sample in samples.clone().step_by(per_pixel as usize) {
         let range = first_sample..samples.end.min(first_sample + per_pixel);
         let before = (pixels_at_once < count).then(|| sums.clone());
@@ -122,6 +118,10 @@ fn render_part(
                     *sums = before;
                 }
                 return first_sample;
+            }
+            // Not before there is something to come in its place, or the second half would be empty.
+            if std::mem::take(&mut joins) {
+                sums.join();
             }
             for sample in range.clone() {
                 let (mut x, mut y) = (first % tile.width, first / tile.width);

@@ -1,8 +1,8 @@
 //! Renders that stop by themselves: at a noise that is what they say it is, or at a time.
 
-use super::materials::picture;
+use super::materials::{picture, scene_with};
 use super::speed::FIGURE1;
-use velour::render::{Image, Settings};
+use velour::render::{Image, RenderError, Settings, Silent, render};
 
 const SIZE: (u32, u32) = (80, 32);
 
@@ -79,13 +79,17 @@ fn threads_and_waves_do_not_show_in_a_render_that_stops_by_noise() {
 #[test]
 fn a_render_stops_at_its_time_and_has_a_picture() {
     let start = std::time::Instant::now();
-    let image = figure(|s| (s.samples, s.seconds) = (1 << 20, Some(0.3)));
+    let image = figure(|s| (s.samples, s.seconds) = (1 << 20, Some(2.0)));
     // Generous, for a machine with other things to do; without the limit this would take hours.
     assert!(start.elapsed().as_secs_f64() < 30.0);
-    assert!(image.about.taken[0] >= 16 && image.about.noise.is_some());
+    assert!(image.about.taken[0] >= 1 && image.about.taken[1] >= 2 && image.about.noise.is_some());
     assert!(image.pixels.iter().all(|p| p.is_finite()) && image.mean()[0] > 0.1);
-    let none = figure(|s| (s.samples, s.seconds) = (1 << 20, Some(1e-6)));
-    assert_eq!(none.about.taken, [16, 16], "the first round is always done");
+    let scene = scene_with(FIGURE1, &[]);
+    let settings = Settings { seconds: Some(1e-6), ..Settings::default() };
+    assert_eq!(render(&scene, &settings, &Silent).unwrap_err(), RenderError::Late);
+    // With a time that is not up, a few samples are taken as without one.
+    let all = figure(|s| (s.samples, s.seconds) = (8, Some(1e6)));
+    assert_eq!((all.about.taken, all.pixels), ([8, 8], estimated(8, 0).pixels));
 }
 
 #[test]
@@ -137,6 +141,6 @@ fn small_and_odd_pictures_are_whole() {
 fn a_noise_and_a_time_stop_at_whichever_comes_first() {
     let image = figure(|s| (s.samples, s.noise, s.seconds) = (1 << 20, Some(0.05), Some(1e4)));
     assert!(image.about.noise.unwrap() <= 0.05);
-    let image = figure(|s| (s.samples, s.noise, s.seconds) = (1 << 20, Some(1e-9), Some(0.2)));
+    let image = figure(|s| (s.samples, s.noise, s.seconds) = (1 << 20, Some(1e-9), Some(2.0)));
     assert!(image.about.noise.unwrap() > 1e-9);
 }

@@ -50,9 +50,10 @@ fn encode(part: &Part, image: &Image, sink: &mut (impl std::io::Write + std::io:
     exr::Image::empty(window).with_layer(picture).with_layer(sums).write().to_buffered(sink).map_err(|e| e.to_string())
 }
 
-/// The two channels of one number of a tier's sums; nothing where all are zero.
+/// The two channels of one number of a tier's sums; nothing where all are zero, but for the weights, without which nothing is known.
 fn words(tier: &Tier, k: usize) -> Vec<exr::AnyChannel<exr::FlatSamples>> {
-    if tier.sums.iter().all(|sum| sum[k] == 0) {
+    let weights = tier.number == 0 && k == PARTS - 1;
+    if !weights && tier.sums.iter().all(|sum| sum[k] == 0) {
         return Vec::new();
     }
     let channel = |word: &str, shift: u32| {

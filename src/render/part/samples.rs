@@ -19,7 +19,7 @@ pub struct Part {
 /// The picture that a part belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Whole {
-    /// The scene's name.
+    /// The name of the scene's file.
     pub scene: String,
     /// See [`fingerprint`](super::fingerprint).
     pub fingerprint: u64,
@@ -54,7 +54,6 @@ impl Whole {
             ("the version of velour", self.version.clone(), other.version.clone()),
             ("the size", size(self), size(other)),
             ("the seed", self.seed.to_string(), other.seed.to_string()),
-            ("the scene", self.scene.clone(), other.scene.clone()),
             ("the size of tiles", self.tile_size.to_string(), other.tile_size.to_string()),
         ];
         for (what, mine, others) in pairs {
@@ -62,8 +61,13 @@ impl Whole {
                 return Some(format!("{what} is {others} and not {mine}"));
             }
         }
+        // The name of the scene does not count: another machine may have it elsewhere.
         let same = self.fingerprint == other.fingerprint && self.alpha == other.alpha;
-        (!same).then(|| "scene, shaders, textures or settings have changed".to_owned())
+        let what = "scene, shaders, textures or settings";
+        (!same).then(|| match self.scene == other.scene {
+            true => format!("{what} have changed"),
+            false => format!("{what} are those of {} and not of {}", other.scene, self.scene),
+        })
     }
 }
 
