@@ -98,6 +98,12 @@ pub const LIBRARY_BYTES: u64 = 16 << 20;
 /// Bytes of a shader, or of a text that a shader reads.
 pub const SHADER_BYTES: u64 = velour_grammar::limits::FILE_BYTES;
 
+/// Bytes of a file that says how a shader is compiled.
+pub const RECIPE_BYTES: u64 = 1 << 16;
+
+/// Bytes of the texts that a texture's file says of its picture; what is beyond is left out.
+pub const ABOUT_BYTES: usize = 1 << 16;
+
 /// Bytes of a texture's file; decoded it must fit into the memory of textures.
 pub const TEXTURE_BYTES: u64 = 16 << 30;
 

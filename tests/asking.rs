@@ -299,9 +299,9 @@ fn layers_run_when_they_are_first_read_or_never() {
     // Read in a branch alone: only the points that come there run it.
     let branch = "surface b(float in = 0) { printf(\"b\"); if (u > .2) printf(\"%g\", in); }";
     assert_eq!(layers(&[("a", GIVER), ("b", branch)], &[("a.out", "b.in")], one, 2), "b|b|a|7|");
-    // Read in two places of which lanes may miss the first: it runs before.
+    // Read in two places of which lanes may miss the first: it runs right before that statement.
     let twice = "surface b(float in = 0) { printf(\"b\"); if (u > .2) printf(\"%g\", in); printf(\"%g\", in); }";
-    assert_eq!(layers(&[("a", GIVER), ("b", twice)], &[("a.out", "b.in")], one, 2), "a|b|7|a|b|7|7|");
+    assert_eq!(layers(&[("a", GIVER), ("b", twice)], &[("a.out", "b.in")], one, 2), "b|a|7|b|a|7|7|");
     // In a loop, in a function, beside a return: right values, once.
     for text in [
         "surface b(float in = 0) { float s = 0; for (int i = 0; i < 3; i++) s += in; printf(\"%g\", s); }",

@@ -138,7 +138,7 @@ fn shade_words_mistakes_as_osl_does_and_tells_usage() {
     );
     for (line, status, says) in [
         (vec!["shade"], 2, "there is no shader and no group"),
-        (vec!["shade", "nowhere"], 1, "shader `nowhere` is not found"),
+        (vec!["shade", "nowhere"], 1, "Could not find shader \"nowhere\""),
         (vec!["shade", "--param", "x", "1"], 2, "there is no shader after --param x"),
         (vec!["shade", "--gird", "1", "1", "stripes"], 2, "there is no option --gird"),
         (vec!["shade", "-d", "int7", "-o", "Cout", "a.exr", "stripes"], 2, "`int7` are no numbers of files"),
@@ -169,6 +169,8 @@ fn check_takes_the_options_of_oslc() {
     assert_eq!((status, out.as_str()), (0, "warns.oso: warns.osl \\\n  part.h\n"));
     place.say(&["check", "-MD", "-MT", "x.oso", "warns.osl"]);
     assert!(std::fs::read_to_string(place.path().join("warns.d")).unwrap().starts_with("x.oso: warns.osl"));
+    assert_eq!(place.say(&["check", "-MMD", "-MFown.d", "warns.osl"]).0, 0);
+    assert!(std::fs::read_to_string(place.path().join("own.d")).unwrap().starts_with("warns.oso: warns.osl"));
     place.say(&["check", "-E", "-o", "out.i", "-DSIDE=7", "warns.osl"]);
     assert!(std::fs::read_to_string(place.path().join("out.i")).unwrap().contains("return x / 2"));
     let (_, _, json) = place.say(&["check", "--message-format", "json", "warns.osl"]);

@@ -224,7 +224,7 @@ fn options_of_texture_mean_what_they_say() {
         (r#"int n; printf("%d %d", gettextureinfo("t", "channels", n), n);"#, "1 4|"),
         (r#"int r[2]; gettextureinfo("t", "resolution", r); printf("%d %d", r[0], r[1]);"#, "2 1|"),
         (r#"int e = 7; printf("%d %d", gettextureinfo("gone", "exists", e), e);"#, "1 0|"),
-        (r#"int e = 7; printf("%d %d", gettextureinfo("gone", "channels", e), e);"#, "0 7|"),
+        (r#"int e = 7; printf("%d %d", gettextureinfo("gone", "channels", e), e);"#, "no gone|0 7|"),
     ] {
         assert_eq!(printed(body, [0.5, 0.5]), text, "{body}");
     }
@@ -361,7 +361,7 @@ fn the_data_of_an_exr_may_be_a_part_of_it() {
     let path = folder.path().join("part.exr");
     Image::new(attributes, layer).write().to_file(&path).unwrap();
     let texture = velour::texture::read(&path, 1 << 30).unwrap();
-    assert_eq!(texture.size(), [10, 5]);
+    assert_eq!((texture.size(), texture.about().data), ([10, 5], Some([3, 1, 6, 2])));
     let at = |x: f32, y: f32| {
         let how = Lookup { interpolation: Interpolation::Closest, ..clamped() };
         texture.value((x + 0.5) / 10.0, (y + 0.5) / 5.0, [0.0; 4], &how)
@@ -407,5 +407,78 @@ fn batches_give_the_bits_of_single_look_ups() {
         });
         assert_eq!(answers[0], answers[1], "{first}");
         assert!(answers[0][10] != answers[0][40], "{:?}", answers[0]);
+    }
+}
+
+#[test]
+fn blurred_texels_show_no_plaid() {
+    // Bilinear texels have kinks at their middles, which the second difference finds.
+    let texture = painted(64, 64, 1, |s, t, _| ((s * 64.0) as i32 * 37 % 17) as f32 / 16.0 + 0.3 * t);
+    let kink = |interpolation: Interpolation| {
+        let how = Lookup { interpolation, blur: [0.2; 2], ..clamped() };
+        let values: Vec<f32> =
+            (0..400).map(|i| texture.value(0.2 + i as f32 * 1.5e-3, 0.5, [2e-3, 0.0, 0.0, 2e-3], &how)[0]).collect();
+        values.windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).abs()).fold(0.0, f32::max)
+    };
+    let (smart, linear) = (kink(Interpolation::Smart), kink(Interpolation::Linear));
+    assert!(smart < 0.2 * linear, "{smart} {linear}");
+}
+
+#[test]
+fn an_ellipse_that_is_too_long_is_made_shorter_and_wider() {
+    // Stripes a thirtieth as wide as the ellipse is long: wider alone would leave nothing of them, as the control at the limit has it.
+    let texture = painted(256, 256, 1, |s, _, _| if (s * 128.0) as i32 % 2 == 0 { 1.0 } else { 0.0 });
+    let of = |short: f32| contrast(&texture, [short, 0.0, 0.0, 0.5], &clamped());
+    let limit = 0.5 / 32.0;
+    assert!(of(1e-4) > 2.0 * of(limit), "{} {}", of(1e-4), of(limit));
+}
+
+/// What a shader of one statement prints that asks about a file.
+fn told_of(file: &str, bytes: &[u8], body: &str) -> String {
+    struct Files(velour::texture::TextureFiles);
+    impl Host for Files {
+        fn texture(&self, name: &str) -> Result<Arc<Texture>, String> {
+            self.0.get(name).map_err(|error| error.to_string())
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(file), bytes).unwrap();
+    let host = Files(velour::texture::TextureFiles::new(vec![folder.path().to_owned()]));
+    let group = compile(&format!("shader s() {{ {body} }}")).unwrap().group().build().unwrap();
+    let mut machine = Machine::with_host(Arc::new(host));
+    machine.shade(&group, &Points::single(velour::glam::Vec3::Z));
+    machine.take_reports().iter().map(|report| format!("{report}|")).collect()
+}
+
+#[test]
+fn a_file_says_when_it_was_made_and_what_color_it_has() {
+    use tiff::encoder::{TiffEncoder, colortype::RGBA8};
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+    let mut image = encoder.new_image::<RGBA8>(2, 1).unwrap();
+    image.encoder().write_tag(tiff::tags::Tag::DateTime, "2026:11:29 12:00:00").unwrap();
+    let words = "oiio:ConstantColor=0.25,0.5,0.75,0.5 oiio:AverageColor=0.125,0.5,0.75,0.5";
+    image.encoder().write_tag(tiff::tags::Tag::ImageDescription, words).unwrap();
+    image.write_data(&[64, 128, 192, 255, 64, 128, 192, 255]).unwrap();
+    let bytes = bytes.into_inner();
+    for (body, says) in [
+        (r#"string d; printf("%d %s", gettextureinfo("a.tif", "DateTime", d), d);"#, "1 2026:11:29 12:00:00|"),
+        (r#"color c; printf("%d %g", gettextureinfo("a.tif", "averagecolor", c), c);"#, "1 0.125 0.5 0.75|"),
+        (r#"color c; printf("%d %g", gettextureinfo("a.tif", "constantcolor", c), c);"#, "1 0.25 0.5 0.75|"),
+        (r#"float a; printf("%d %g", gettextureinfo("a.tif", "constantalpha", a), a);"#, "1 0.5|"),
+        (r#"string d = "-"; printf("%d %s", gettextureinfo("a.tif", "Nothing", d), d);"#, "0 -|"),
+    ] {
+        assert_eq!(told_of("a.tif", &bytes, body), says, "{body}");
+    }
+    let gone = told_of("a.tif", &bytes, r#"int n; printf("%d", gettextureinfo("gone.tif", "channels", n));"#);
+    assert!(gone.contains("gone.tif"), "{gone}");
+    let gone = told_of("a.tif", &bytes, r#"int n; printf("%d", gettextureinfo("gone.tif", "exists", n));"#);
+    assert_eq!(gone, "1|");
+    // Of many tiles the one at the place, or any where no place is given.
+    for (place, says) in [("", "1 2|"), (".5, .5,", "1 2|"), ("1.5, .5,", "0 0|")] {
+        let body = format!(
+            r#"int r[2]; int ok = gettextureinfo("a.<UDIM>.tif", {place} "resolution", r); printf("%d %d", ok, r[0]);"#
+        );
+        assert_eq!(told_of("a.1001.tif", &bytes, &body), says, "{place}");
     }
 }

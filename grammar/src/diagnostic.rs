@@ -27,6 +27,8 @@ pub struct Diagnostic {
     pub label: String,
     /// Other places that matter, each with a remark.
     pub secondary: Vec<(Span, String)>,
+    /// Functions that it is about, each as it is declared, under headings; the short form lists them below the message.
+    pub functions: Vec<(&'static str, Vec<(Span, String)>)>,
     /// One line on how to get out of it.
     pub help: Option<String>,
 }
@@ -41,6 +43,7 @@ impl Diagnostic {
             span,
             label: String::new(),
             secondary: Vec::new(),
+            functions: Vec::new(),
             help: None,
         }
     }
@@ -59,6 +62,12 @@ impl Diagnostic {
     /// Adds another place with a remark.
     pub fn also(mut self, span: Span, remark: impl Into<String>) -> Self {
         self.secondary.push((span, remark.into()));
+        self
+    }
+
+    /// Adds functions that it is about.
+    pub fn functions(mut self, heading: &'static str, functions: Vec<(Span, String)>) -> Self {
+        self.functions.push((heading, functions));
         self
     }
 

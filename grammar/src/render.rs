@@ -112,6 +112,13 @@ impl Sources {
             Severity::Warning => "warning",
         };
         out.push_str(&format!("{severity}: {}\n", diagnostic.message.replace('\n', " ")));
+        for (heading, functions) in diagnostic.functions.iter().filter(|(_, functions)| !functions.is_empty()) {
+            out.push_str(&format!("  {heading}:\n"));
+            for (span, text) in functions {
+                let place = self.locate(*span).map_or(String::new(), |at| format!("{}:{}\t", at.file, at.line));
+                out.push_str(&format!("    {place}{text}\n"));
+            }
+        }
     }
 
     fn render_json(&self, diagnostic: &Diagnostic, out: &mut String) {

@@ -117,8 +117,9 @@ impl Checker<'_> {
             let undecided = best.iter().filter(|b| rank(b.2) == rank(&chosen)).count() > 1;
             let fatal =
                 undecided && (lists || self.returns_of(&chosen).structure().is_some()) || lists && expected.is_none();
-            let spans: Vec<Span> = tied().filter_map(|b| self.span_of(b.2)).collect();
-            self.ambiguous(name, &spans, fatal);
+            let mut fits: Vec<&Candidate> = tied().map(|b| b.2).collect();
+            fits.sort_by_key(|candidate| rank(candidate));
+            self.ambiguous(name, &fits, fatal);
             if fatal {
                 return None;
             }
@@ -126,14 +127,28 @@ impl Checker<'_> {
         Some(chosen)
     }
 
-    fn ambiguous(&mut self, name: &Ident, spans: &[Span], fatal: bool) {
+    /// Reports a call that several candidates fit, the one that is taken first.
+    fn ambiguous(&mut self, name: &Ident, fits: &[&Candidate], fatal: bool) {
         let message = format!("the call of `{}` is ambiguous", name.name);
         let diagnostic = if fatal {
             Diagnostic::error("E0413", name.span, message)
         } else {
             Diagnostic::warning("W0502", name.span, message)
         };
-        let diagnostic = spans.iter().fold(diagnostic, |d, &span| d.also(span, "this one fits"));
+        let text = |candidate: &&Candidate| {
+            let span = self.span_of(candidate)?;
+            let (returns, formals) = (self.returns_of(candidate), self.formals_text(candidate));
+            Some((span, format!("{returns} {} {formals}", name.name)))
+        };
+        let functions: Vec<(Span, String)> = fits.iter().filter_map(text).collect();
+        let diagnostic = functions.iter().fold(diagnostic, |d, (span, _)| d.also(*span, "this one fits"));
+        // The headings are oslc's.
+        let diagnostic = match functions.split_first() {
+            Some((chosen, others)) if !fatal => diagnostic
+                .functions("Chosen function is", vec![chosen.clone()])
+                .functions("Other candidates are", others.to_vec()),
+            _ => diagnostic.functions("Candidates are", functions),
+        };
         self.report(diagnostic.help("cast an argument, or the result, to the type that is meant"));
     }
 

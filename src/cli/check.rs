@@ -1,10 +1,11 @@
-//! `velour check`: reports every mistake in shader files, with the options of OSL's oslc.
+//! `velour check` and `velour compile`: report every mistake in shader files, with the options of OSL's oslc; the second also
+//! writes how right ones are compiled.
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::speak::{colored, say, say_as_it_is, tell};
 use super::watch::TimeBound;
-use crate::compile::{Checked, Compiler};
+use crate::compile::{Checked, Compiler, Recipe, Shader};
 use crate::files::Destination;
 use crate::limits::SHADER_BYTES;
 use std::io::{Read, Write};
@@ -25,7 +26,7 @@ pub enum MessageFormat {
     Json,
 }
 
-/// Arguments of `velour check`.
+/// Arguments of `velour check` and `velour compile`.
 #[derive(clap::Args)]
 pub struct CheckArgs {
     /// Shader files; `-` for standard input
@@ -49,7 +50,7 @@ pub struct CheckArgs {
     /// Stop after the preprocessor and print its output
     #[arg(short = 'E')]
     preprocess: bool,
-    /// Where the output of -E or -M goes; shaders are compiled when they run, so there is no other
+    /// Where the output of -E or -M goes, or the .oso file of `compile` [default: the shader's name ending with .oso]
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// End with an error when this takes more than S seconds
@@ -79,7 +80,7 @@ struct DependArgs {
 }
 
 /// Checks the files; all of them, whatever the first ones contain.
-pub fn run(args: &CheckArgs) -> Result<(), Failure> {
+pub fn run(args: &CheckArgs, make: bool) -> Result<(), Failure> {
     let _bound = TimeBound::new(Instant::now(), args.time, "before all was checked");
     let compiler = args.compile.compiler()?;
     let (mut wrong, mut unreadable) = (false, false);
@@ -93,7 +94,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
                 continue;
             }
         };
-        wrong |= !one(args, &compiler, &name, &bytes, &mut last)?;
+        wrong |= !one(args, &compiler, (&name, &bytes), make, &mut last)?;
     }
     // The process ends with it: to free a large shader piece by piece takes a tenth of the time of checking it.
     std::mem::forget(last);
@@ -116,12 +117,13 @@ fn read(path: &Path, access: &Access) -> Result<(String, Vec<u8>), String> {
     read.map(|bytes| (name.clone(), bytes)).map_err(|error| format!("{name}: error: cannot be read: {error}\n"))
 }
 
-/// Checks one file; true when it is right. What there was to it takes the place of the one before.
+/// Checks one file, and writes how it is compiled where that is wanted; true when it is right. What there was to it takes the place of the
+/// one before.
 fn one(
     args: &CheckArgs,
     compiler: &Compiler,
-    name: &str,
-    bytes: &[u8],
+    (name, bytes): (&str, &[u8]),
+    make: bool,
     last: &mut Option<Checked>,
 ) -> Result<bool, Failure> {
     let right = if args.preprocess {
@@ -134,6 +136,9 @@ fn one(
             if args.all_warnings { compiler.check_closely(name, bytes) } else { compiler.check_bytes(name, bytes) };
         depend(args, compiler, name, &checked.sources)?;
         let right = report(args, std::mem::take(&mut checked.diagnostics), &checked.sources);
+        if make && !args.depend.only {
+            write_recipe(args, compiler, name, checked.shader.as_ref().filter(|_| right))?;
+        }
         *last = Some(checked);
         right
     };
@@ -141,6 +146,41 @@ fn one(
         say(&format!("{name}: right\n"));
     }
     Ok(right)
+}
+
+/// Writes how a right shader is compiled to the working folder, and says so as oslc does.
+fn write_recipe(args: &CheckArgs, compiler: &Compiler, name: &str, shader: Option<&Shader>) -> Result<(), Failure> {
+    let Some(shader) = shader else {
+        if !args.quiet {
+            say(&format!("FAILED {name}\n"));
+        }
+        return Ok(());
+    };
+    let failed = |reason: String| Failure::Usage(format!("{name}: error: {reason}"));
+    let whole = |path: &Path| std::path::absolute(path).map_err(|error| failed(error.to_string()));
+    if !compiler.options.access.is_file(Path::new(name)) {
+        return Err(failed("what is to be compiled must be in a file, which is read again when it runs".to_owned()));
+    }
+    let include_dirs: Result<Vec<PathBuf>, Failure> =
+        compiler.options.include_dirs.iter().map(|folder| whole(folder)).collect();
+    let header = args.compile.header().map(whole).transpose()?;
+    let recipe = Recipe {
+        header,
+        source: whole(Path::new(name))?,
+        name: name.to_owned(),
+        include_dirs: include_dirs?,
+        defines: compiler.options.defines.clone(),
+        undefines: compiler.options.undefines.clone(),
+    };
+    let text = recipe.text().ok_or_else(|| {
+        failed("names with line breaks, or of more than 64 kB together, cannot be written".to_owned())
+    })?;
+    let target = args.output.clone().unwrap_or_else(|| format!("{}.oso", shader.name()).into());
+    put(Some(&target), &text)?;
+    if !args.quiet {
+        say(&format!("Compiled {name} -> {}\n", target.display()));
+    }
+    Ok(())
 }
 
 /// Tells the messages; true when none is an error.

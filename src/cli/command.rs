@@ -1,6 +1,7 @@
 //! The commands, how their arguments are read, and what the process ends with.
 
 use super::failure::Failure;
+use super::names::named;
 use super::speak::{lost, tell};
 use super::{chart, check, info, merge, new, render, shade, tree, verify};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -25,6 +26,8 @@ enum Command {
     Merge(merge::MergeArgs),
     /// Check shaders and report every mistake
     Check(check::CheckArgs),
+    /// Check shaders and write .oso files that say how they are compiled, as OSL's oslc is used
+    Compile(check::CheckArgs),
     /// Show the closure tree of a shader
     Tree(tree::TreeArgs),
     /// Run shaders on a grid of points, as OSL's testshade does
@@ -40,7 +43,7 @@ enum Command {
 /// Runs the command line and gives the exit status: 0 done, 1 a shader or scene is wrong, 2 usage or files, 130 and 143 a render that
 /// was stopped by SIGINT and SIGTERM.
 pub fn run() -> ExitCode {
-    let arguments = match Arguments::try_parse_from(gnu_style(std::env::args_os().collect())) {
+    let arguments = match Arguments::try_parse_from(gnu_style(named(std::env::args_os().collect()))) {
         Ok(arguments) => arguments,
         Err(error) => {
             // A pipe that closes early is no reason to complain.
@@ -52,7 +55,8 @@ pub fn run() -> ExitCode {
         Command::New(args) => new::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Merge(args) => merge::run(&args),
-        Command::Check(args) => check::run(&args),
+        Command::Check(args) => check::run(&args, false),
+        Command::Compile(args) => check::run(&args, true),
         Command::Tree(args) => tree::run(&args),
         Command::Shade(args) => shade::run(&args.words),
         Command::Verify(args) => verify::run(&args),
@@ -75,12 +79,20 @@ fn gnu_style(words: Vec<OsString>) -> Vec<OsString> {
     let command = Arguments::command();
     let named = words.get(1).and_then(|word| word.to_str()).unwrap_or_default();
     let Some(chosen) = command.find_subcommand(named).filter(|_| named != "shade") else { return words };
-    let longs: Vec<&str> = chosen.get_arguments().filter_map(|argument| argument.get_long()).collect();
+    let names = |argument: &'_ clap::Arg| -> Vec<String> {
+        let aliases = argument.get_all_aliases().unwrap_or_default();
+        argument.get_long().into_iter().chain(aliases).map(str::to_owned).collect()
+    };
+    let longs: Vec<String> = chosen.get_arguments().flat_map(names).collect();
+    let long = |name: &str| longs.iter().any(|known| known == name);
     let short = |word: &str| word.len() == 1 && chosen.get_arguments().any(|a| a.get_short() == word.chars().next());
     let fixed = |word: OsString| match word.to_str().and_then(|text| text.strip_prefix('-')) {
-        Some(bare) if !short(bare) && longs.contains(&bare.split('=').next().unwrap_or(bare)) => {
+        Some(bare) if !short(bare) && long(bare.split('=').next().unwrap_or(bare)) => {
             OsString::from(format!("--{bare}"))
         }
+        // Compilers take the file of these without a space.
+        Some(bare) if bare.starts_with("MF") && long("MF") => OsString::from(format!("--MF={}", &bare[2..])),
+        Some(bare) if bare.starts_with("MT") && long("MT") => OsString::from(format!("--MT={}", &bare[2..])),
         _ => word,
     };
     words.into_iter().map(fixed).collect()

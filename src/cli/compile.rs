@@ -5,7 +5,7 @@ use super::watch;
 use crate::compile::Compiler;
 use crate::limits::SHADER_BYTES;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use velour_grammar::files::Access;
 
 /// How shaders are compiled.
@@ -50,6 +50,11 @@ impl CompileArgs {
             Some(folder) => Access::within(folder)
                 .map_err(|error| Failure::Usage(format!("error: the sandbox {}: {error}", folder.display()))),
         }
+    }
+
+    /// Another standard header than the built-in one.
+    pub fn header(&self) -> Option<&Path> {
+        self.stdosl.as_deref()
     }
 
     /// The compiler they ask for.

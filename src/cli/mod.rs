@@ -9,6 +9,7 @@ mod info;
 mod info_file;
 mod keep;
 mod merge;
+mod names;
 mod new;
 mod render;
 mod shade;

@@ -7,6 +7,7 @@ use crate::closure::Library;
 use crate::exec::{Group, Locate, ReportPlace};
 use crate::ir::lower::{Binding, Layer, Lazy, LowerOptions, SPANS_PER_LAYER, lower};
 use crate::lang::types::{Base, Type};
+use crate::ops::working_space::WorkingSpace;
 use crate::optimize::{OptimizeOptions, optimize};
 use std::sync::Arc;
 use velour_grammar::{Sources, Span};
@@ -37,6 +38,8 @@ impl GroupBuilder {
                 position: false,
                 lazy: Lazy::default(),
                 userdata_connects: false,
+                watch: false,
+                working_space: WorkingSpace::Rec709,
             },
             optimize: OptimizeOptions::default(),
             error: None,
@@ -142,6 +145,18 @@ impl GroupBuilder {
     /// Says which layers wait until somebody reads what they put out; by default all but the last.
     pub fn lazy(mut self, lazy: Lazy) -> Self {
         self.lower.lazy = lazy;
+        self
+    }
+
+    /// Reports what shaders assign and is no finite number, which costs a look at every assignment.
+    pub fn watched(mut self, watch: bool) -> Self {
+        self.lower.watch = watch;
+        self
+    }
+
+    /// Says what RGB means to the shaders; by default Rec. 709.
+    pub fn working_space(mut self, space: WorkingSpace) -> Self {
+        self.lower.working_space = space;
         self
     }
 

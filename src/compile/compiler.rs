@@ -1,6 +1,7 @@
 //! What all shaders of a session share, and the way from text to a shader.
 
 use super::error::CompileError;
+use super::recipe::Recipe;
 use super::shader::Shader;
 use crate::check::check;
 use crate::closure::Library;
@@ -138,17 +139,37 @@ impl Compiler {
         Self::require(self.check(name, text))
     }
 
-    /// Compiles a file to a shader.
+    /// Compiles a file to a shader: its text, or a [`Recipe`], whose macros and folders go before those of this compiler.
     ///
     /// # Errors
     /// The file cannot be read, or its text is wrong.
     pub fn compile_file(&self, path: &Path) -> Result<Shader, CompileError> {
-        let name = path.display().to_string();
-        let bytes = self
-            .options
-            .access
-            .read(path, SHADER_BYTES)
-            .map_err(|error| CompileError::File { name: name.clone(), error: error.into() })?;
+        let Some(recipe) = Recipe::of_file(path, &self.options.access) else {
+            return self.compile_text_of(path, path.display().to_string());
+        };
+        let mut compiler = self.clone();
+        if let Some(header) = &recipe.header {
+            let name = header.display().to_string();
+            let text = String::from_utf8(self.read(header, &name)?).map_err(|_| CompileError::File {
+                name: name.clone(),
+                error: std::io::Error::other("it is not UTF-8 text"),
+            })?;
+            compiler = compiler.with_header(&name, &text);
+        }
+        compiler.options.include_dirs.splice(0..0, recipe.include_dirs);
+        compiler.options.defines.splice(0..0, recipe.defines);
+        compiler.options.undefines.splice(0..0, recipe.undefines);
+        compiler.compile_text_of(&recipe.source, recipe.name)
+    }
+
+    /// The bytes of a file that may be read, which messages call `name`.
+    fn read(&self, path: &Path, name: &str) -> Result<Vec<u8>, CompileError> {
+        let read = self.options.access.read(path, SHADER_BYTES);
+        read.map_err(|error| CompileError::File { name: name.to_owned(), error: error.into() })
+    }
+
+    fn compile_text_of(&self, path: &Path, name: String) -> Result<Shader, CompileError> {
+        let bytes = self.read(path, &name)?;
         Self::require(self.check_bytes(&name, &bytes))
     }
 

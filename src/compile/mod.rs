@@ -7,9 +7,11 @@ mod builder;
 mod compiler;
 mod error;
 mod fit;
+mod recipe;
 mod shader;
 
 pub use builder::GroupBuilder;
 pub use compiler::{Checked, Compiler, STDOSL, compile};
 pub use error::{CompileError, GroupError, GroupProblem, GroupSubject};
+pub use recipe::Recipe;
 pub use shader::Shader;

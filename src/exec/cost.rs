@@ -40,7 +40,8 @@ pub(super) fn of(routine: &Routine) -> u64 {
             Smooth::Blackbody | Smooth::WavelengthColor | Smooth::TransformColor | Smooth::TransformUnit => 300,
         },
         Routine::SpaceMatrix => 100,
-        Routine::ClampIndex(_) | Routine::RayType => 2,
+        Routine::ClampIndex { .. } | Routine::RayType => 2,
+        Routine::CheckFinite(watch) => 2 * u64::from(watch.count),
         Routine::HashInt | Routine::HashFloats(_) | Routine::Random(_) => 16,
         Routine::HashString | Routine::Strlen | Routine::GetChar | Routine::StartsWith | Routine::EndsWith => 50,
         Routine::Substr | Routine::Concat | Routine::Stof | Routine::Stoi => 150,
@@ -61,5 +62,5 @@ fn of_noise(noise: &Noise) -> u64 {
         NoiseKind::Cell | NoiseKind::Hash => 8,
         _ => 20,
     };
-    one * u64::from(noise.outputs.max(1)) * if noise.gradient { 2 } else { 1 }
+    one * u64::from(noise.outputs.max(1)) * if noise.gradient || noise.filtered { 2 } else { 1 }
 }

@@ -23,15 +23,17 @@ impl Run<'_> {
             return None;
         }
         let read = if text.trim_start().starts_with('<') { Ok(text.to_owned()) } else { self.host.read_text(text) };
-        let parsed =
-            read.and_then(|read| Dictionary::parse(&read).map_err(|reason| format!("this is no dictionary: {reason}")));
+        let unread = |reason| (Mistake::NoDictionary { name: text.to_owned() }, reason);
+        let parsed = read.map_err(unread).and_then(|read| {
+            Dictionary::parse(&read).map_err(|reason| (Mistake::Other, format!("this is no dictionary: {reason}")))
+        });
         let found = match parsed {
             Ok(dictionary) => {
                 self.s.dictionaries.parsed.push(dictionary);
                 Some(self.s.dictionaries.parsed.len() - 1)
             }
-            Err(reason) => {
-                self.report_once(lane, span, Mistake::Other, reason);
+            Err((mistake, reason)) => {
+                self.report_once(lane, span, mistake, reason);
                 None
             }
         };

@@ -2,7 +2,7 @@
 
 use super::report::ReportPlace;
 use crate::closure::Library;
-use crate::ir::op::{AttributeOf, Input, Reach, Routine};
+use crate::ir::op::{AttributeOf, Input, PrintTo, Reach, Routine};
 use crate::ir::program::*;
 use crate::ir::verify::{VerifyError, verify};
 use crate::lang::closures::{ClosureId, ClosureSpec, ClosureTable};
@@ -112,6 +112,17 @@ impl Group {
             }
         };
         matches!(kind, Kind::Float | Kind::Int).then_some((count, kind == Kind::Int))
+    }
+
+    /// Where the program, as it is after optimising, calls `error`, in the order of the text.
+    pub fn error_calls(&self) -> Vec<ReportPlace> {
+        let mut places = Vec::new();
+        visit_instrs(&self.program.body, &mut |instr| {
+            if let Instr::Call { routine: Routine::Print(PrintTo::Error, _), span, .. } = instr {
+                places.push((self.locate)(*span));
+            }
+        });
+        places
     }
 
     /// May the group ask for one of these attributes of what is shaded, or for its derivatives where `slopes` is true? A name that is

@@ -170,14 +170,17 @@ fn gabor<'r>(noise: Noise, out: &mut [Vec<f32>], src: &[Reg], column: impl Fn(Re
             impulses: at(options + 4),
             anisotropic: at(options + 5) as i32,
             period: std::array::from_fn(period),
+            pixel: noise.filtered.then(|| {
+                let flat = dims.min(3);
+                let change = |axis: usize, c: usize| if c < flat { at(options + 6 + axis * flat + c) } else { 0.0 };
+                [0, 1].map(|axis| std::array::from_fn(|c| change(axis, c)))
+            }),
         };
         let p = std::array::from_fn(coordinate);
         let time = coordinate(3);
         for o in 0..outputs {
             let whole = time.floor();
-            let seed = |step: f32| {
-                (o as u32).wrapping_mul(0x9e37_79b9) ^ ((whole + step) as i32 as u32).wrapping_mul(0x85eb_ca6b)
-            };
+            let seed = |step: f32| (o as u32).wrapping_add(((whole + step) as i32 as u32).wrapping_mul(0x85eb_ca6b));
             let (mut jet, part) = (kind.at(p, seed(0.0)), time - whole);
             let mut along_time = 0.0;
             if dims == 4 && part.is_finite() {

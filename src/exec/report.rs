@@ -66,6 +66,25 @@ pub enum Mistake {
         /// Why not.
         reason: String,
     },
+    /// A variable that was given what is no finite number, in a group that watches for it.
+    NotFinite {
+        /// Is it no number at all?
+        nan: bool,
+        /// The variable.
+        variable: String,
+        /// What computed the value, by OSL's name.
+        operation: String,
+    },
+    /// A texture that something is asked of and that there is not.
+    TextureInfo {
+        /// Why not.
+        reason: String,
+    },
+    /// A dictionary that there is no file of.
+    NoDictionary {
+        /// Its name.
+        name: String,
+    },
     /// A message that could not be set or read.
     Message {
         /// Its name.

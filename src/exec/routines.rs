@@ -7,6 +7,7 @@ use super::run::Run;
 use super::smooth;
 use crate::ir::op::*;
 use crate::ir::program::Reg;
+use crate::ir::routine::Watch;
 use crate::ops::color::{ColorSpace, transformc};
 use crate::ops::{hash, pattern, string};
 use velour_grammar::Span;
@@ -31,7 +32,8 @@ impl Run<'_> {
             Routine::Smooth(function) => self.float_lanes(dst, src, |a, out| smooth::value(*function, a, out)),
             Routine::Slope(function) => self.float_lanes(dst, src, |a, out| smooth::change(*function, a, out)),
             Routine::SpaceMatrix => self.space_matrix(dst, src, span),
-            Routine::ClampIndex(len) => self.clamp_index(*len, dst[0], src[0], span),
+            Routine::CheckFinite(watch) => self.check_finite(watch, src, span),
+            Routine::ClampIndex { len, .. } => self.clamp_index(*len, dst[0], src[0], span),
             Routine::HashInt => self.int_lanes(dst, src, |a| hash::hash_int(a.i(0))),
             Routine::HashFloats(count) => self.int_lanes(dst, src, |a| match count {
                 1 => hash::hash_float(a.f(0)),
@@ -55,7 +57,7 @@ impl Run<'_> {
             Routine::RayType => self.ray_type(dst, src),
             Routine::Attribute(attribute) => self.attribute(*attribute, dst, src),
             Routine::Texture(texture) => self.texture(*texture, dst, src, span),
-            Routine::TextureInfo(ty) => self.texture_info(*ty, dst, src),
+            Routine::TextureInfo(ty) => self.texture_info(*ty, dst, src, span),
             Routine::SetMessage(shape) => self.set_message(shape, src, span),
             Routine::GetMessage(shape) => self.get_message(shape, dst, src, span),
             Routine::Random(_) => self.random(dst),
@@ -132,6 +134,21 @@ impl Run<'_> {
         }
     }
 
+    /// Reports what is assigned in a lane and is no finite number.
+    fn check_finite(&mut self, watch: &Watch, src: &[Reg], span: Span) {
+        for lane in 0..self.n {
+            if self.s.mask[lane] == 0 {
+                continue;
+            }
+            let args = Lane { run: self, src, lane };
+            let Some(value) = (0..src.len()).map(|at| args.f(at)).find(|x| !x.is_finite()) else { continue };
+            let (nan, Watch { variable, operation, .. }) = (value.is_nan(), watch.clone());
+            let text =
+                format!("{variable} is given {}, which {operation} has made", if nan { "a nan" } else { "an inf" });
+            self.report_once(lane, span, Mistake::NotFinite { nan, variable, operation: operation.to_owned() }, text);
+        }
+    }
+
     fn regex(&mut self, whole: bool, dst: &[Reg], src: &[Reg], span: Span) {
         let search = if whole { pattern::regex_match } else { pattern::regex_search };
         let lanes = self.lanes_of(dst[0]);
@@ -182,12 +199,12 @@ impl Run<'_> {
     }
 
     fn transform_color(&mut self, dst: &[Reg], src: &[Reg], span: Span) {
-        let lanes = self.lanes_of(dst[0]);
+        let (lanes, space) = (self.lanes_of(dst[0]), self.group.program.working_space);
         for lane in 0..lanes {
             let args = Lane { run: self, src, lane };
             let (from, to, color) = (args.s(0), args.s(1), args.triple(2));
             let result = match (ColorSpace::from_name(from), ColorSpace::from_name(to)) {
-                (Some(from), Some(to)) => transformc(from, to, color),
+                (Some(from), Some(to)) => transformc(space, from, to, color),
                 _ if self.idle(lane, lanes) => color,
                 _ => {
                     let message = format!("there is no color space \"{from}\" or no \"{to}\"");

@@ -23,6 +23,7 @@ fn units(a: &Lane, length: f32) -> f32 {
 
 /// The value of a function.
 pub(super) fn value(function: Smooth, a: &Lane, out: &mut [f32; 16]) {
+    let space = a.run.group.program.working_space;
     match function {
         Smooth::Spline(knots) => {
             out[0] = spline::spline(Basis::from_name(a.s(0)), a.f(1), counted(a, knots), |i| a.f(3 + i));
@@ -32,10 +33,10 @@ pub(super) fn value(function: Smooth, a: &Lane, out: &mut [f32; 16]) {
         }
         Smooth::MatrixInverse => *out = matrix::inverse(&a.matrix(0)),
         Smooth::Determinant => out[0] = matrix::determinant(&a.matrix(0)),
-        Smooth::Blackbody => out[..3].copy_from_slice(&color::blackbody(a.f(0))),
-        Smooth::WavelengthColor => out[..3].copy_from_slice(&color::wavelength_color(a.f(0))),
+        Smooth::Blackbody => out[..3].copy_from_slice(&color::blackbody(space, a.f(0))),
+        Smooth::WavelengthColor => out[..3].copy_from_slice(&color::wavelength_color(space, a.f(0))),
         Smooth::TransformColor => {
-            let moved = spaces(a).map_or(a.triple(2), |(from, to)| color::transformc(from, to, a.triple(2)));
+            let moved = spaces(a).map_or(a.triple(2), |(from, to)| color::transformc(space, from, to, a.triple(2)));
             out[..3].copy_from_slice(&moved);
         }
         Smooth::TransformUnit => out[0] = units(a, a.f(2)),
@@ -44,6 +45,7 @@ pub(super) fn value(function: Smooth, a: &Lane, out: &mut [f32; 16]) {
 
 /// The change of a function's value: its arguments, its value and the changes of its arguments are the lane's arguments.
 pub(super) fn change(function: Smooth, a: &Lane, out: &mut [f32; 16]) {
+    let space = a.run.group.program.working_space;
     match function {
         Smooth::Spline(knots) => {
             let (basis, count, changes) = (Basis::from_name(a.s(0)), counted(a, knots), 4 + knots as usize);
@@ -57,13 +59,15 @@ pub(super) fn change(function: Smooth, a: &Lane, out: &mut [f32; 16]) {
         }
         Smooth::MatrixInverse => *out = matrix::inverse_change(&a.matrix(0), &a.matrix(16), &a.matrix(32)),
         Smooth::Determinant => out[0] = matrix::determinant_change(&a.matrix(0), &a.matrix(17)),
-        Smooth::Blackbody => out[..3].copy_from_slice(&color::blackbody_slope(a.f(0)).map(|slope| slope * a.f(4))),
+        Smooth::Blackbody => {
+            out[..3].copy_from_slice(&color::blackbody_slope(space, a.f(0)).map(|slope| slope * a.f(4)))
+        }
         Smooth::WavelengthColor => {
-            out[..3].copy_from_slice(&color::wavelength_color_slope(a.f(0)).map(|slope| slope * a.f(4)));
+            out[..3].copy_from_slice(&color::wavelength_color_slope(space, a.f(0)).map(|slope| slope * a.f(4)));
         }
         Smooth::TransformColor => {
             let (color, change) = (a.triple(2), a.triple(8));
-            let moved = spaces(a).map_or(change, |(from, to)| transformc_slope(from, to, color, change));
+            let moved = spaces(a).map_or(change, |(from, to)| transformc_slope(space, from, to, color, change));
             out[..3].copy_from_slice(&moved);
         }
         Smooth::TransformUnit => out[0] = units(a, a.f(4)),

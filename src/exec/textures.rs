@@ -7,6 +7,7 @@ use crate::ir::op::{AttributeType, TextureCall};
 use crate::ir::program::Reg;
 use crate::lang::symbols::Symbol;
 use crate::ops::color::{ColorSpace, transformc};
+use crate::ops::working_space::WorkingSpace;
 use crate::texture::{
     Interpolation, Lookup, Sample, Texture, Up, Wrap, is_tiled, latitude_longitude, tile_name, values,
 };
@@ -30,7 +31,8 @@ impl Layout {
 struct How {
     lookup: Lookup,
     missing: [Option<f32>; 4],
-    space: Option<ColorSpace>,
+    /// What its colors are in, and what they become.
+    space: Option<(ColorSpace, WorkingSpace)>,
 }
 
 impl Run<'_> {
@@ -94,7 +96,8 @@ impl Run<'_> {
         let color = |i: usize| (given & 1 != 0).then(|| f(5 + i));
         let missing = [color(0), color(1), color(2), (given & 2 != 0).then(|| f(8))];
         let space = args.s(at.strings + 4);
-        How { lookup, missing, space: ColorSpace::from_name(space).filter(|_| !space.is_empty()) }
+        let space = ColorSpace::from_name(space).map(|space| (space, self.group.program.working_space));
+        How { lookup, missing, space }
     }
 
     /// Looks all lanes up at once, where they ask one texture, in one way, for nothing but the value; false where they do not.
@@ -192,68 +195,100 @@ impl Run<'_> {
         }
     }
 
-    pub(super) fn texture_info(&mut self, ty: AttributeType, dst: &[Reg], src: &[Reg]) {
+    pub(super) fn texture_info(&mut self, ty: AttributeType, dst: &[Reg], src: &[Reg], span: Span) {
         for lane in 0..self.n {
             if self.s.mask[lane] == 0 {
                 continue;
             }
             let args = Lane { run: self, src, lane };
             let (symbol, name, mut s, mut t) = (args.i(0), args.s(1).to_owned(), args.f(2), args.f(3));
+            let anywhere = s.is_nan() && t.is_nan();
             let mut found = self.texture_at(symbol, &mut s, &mut t);
-            if found.is_err() {
+            if found.is_err() && anywhere && is_tiled(self.tree.strings.text(Symbol(symbol))) {
                 found = self.any_tile(symbol);
+            }
+            // A tile that there is not is no mistake.
+            let tiled = is_tiled(self.tree.strings.text(Symbol(symbol)));
+            if let (Err(reason), false) = (&found, name == "exists" || tiled) {
+                let (reason, text) = (reason.clone(), reason.clone());
+                self.report_once(lane, span, Mistake::TextureInfo { reason }, text);
             }
             let there = self.put_info(ty, &dst[1..], lane, &name, found.as_deref().ok());
             self.regs.ints[dst[0].0 as usize][lane] = i32::from(there);
         }
     }
 
-    /// What is known of a texture, by the names that OSL gives; false for what is not known as this type.
-    ///
-    /// Differs from OSL: the data window is the display window, in which the data of a file have been placed.
+    /// What is known of a texture, by the names that OSL gives, and by those of its file; false for what is not known as this type.
     fn put_info(&mut self, ty: AttributeType, dst: &[Reg], lane: usize, name: &str, texture: Option<&Texture>) -> bool {
         if name == "exists" && ty == AttributeType::Ints(1) {
             self.regs.ints[dst[0].0 as usize][lane] = i32::from(texture.is_some());
             return true;
         }
         let Some(texture) = texture else { return false };
-        let [width, height] = texture.size().map(|side| side as i32);
-        let channels = texture.channels() as i32;
-        let ints: Vec<i32> = match (name, ty) {
-            ("resolution", AttributeType::Ints(2)) => vec![width, height],
-            ("resolution", AttributeType::Ints(3)) => vec![width, height, 1],
-            ("datawindow" | "displaywindow", AttributeType::Ints(4)) => vec![0, 0, width - 1, height - 1],
-            ("datawindow" | "displaywindow", AttributeType::Ints(6)) => vec![0, 0, 0, width - 1, height - 1, 0],
-            ("channels", AttributeType::Ints(1)) => vec![channels],
-            ("subimages" | "miplevels", AttributeType::Ints(1)) => vec![1],
-            _ => Vec::new(),
-        };
-        let text = match (name, ty) {
-            ("type", AttributeType::Strings(1)) => "texture".to_owned(),
-            ("texturetype", AttributeType::Strings(1)) => "Plain Texture".to_owned(),
-            ("textureformat", AttributeType::Strings(1)) => "Plain Texture".to_owned(),
-            ("wrapmodes", AttributeType::Strings(1)) => texture.wrap().map(Wrap::name).join(","),
-            _ => String::new(),
-        };
-        let mean = texture.mean();
-        let floats: Vec<f32> = match (name, ty) {
-            ("channels", AttributeType::Floats(1)) => vec![channels as f32],
-            ("averagecolor", AttributeType::Floats(count)) => {
-                (0..count as usize).map(|c| mean.get(c).copied().unwrap_or(0.0)).collect()
-            }
-            ("averagealpha", AttributeType::Floats(1)) if channels == 4 => vec![mean[3]],
-            _ => Vec::new(),
-        };
+        let ints = known_ints(texture, name, ty);
         for (reg, value) in dst.iter().zip(&ints) {
             self.regs.ints[reg.0 as usize][lane] = *value;
         }
+        let floats = known_floats(texture, name, ty);
         for (reg, value) in dst.iter().zip(&floats) {
             self.regs.floats[reg.0 as usize][lane] = *value;
         }
-        if !text.is_empty() {
-            self.regs.ints[dst[0].0 as usize][lane] = self.tree.strings.symbol(&text).0;
+        let text = (ty == AttributeType::Strings(1)).then(|| known_text(texture, name)).flatten();
+        if let Some(text) = &text {
+            self.regs.ints[dst[0].0 as usize][lane] = self.tree.strings.symbol(text).0;
         }
-        !ints.is_empty() || !floats.is_empty() || !text.is_empty()
+        !ints.is_empty() || !floats.is_empty() || text.is_some()
+    }
+}
+
+/// Whole numbers that are known of a texture; none where that is none of them. `resolution` is that of the texels that the file has.
+fn known_ints(texture: &Texture, name: &str, ty: AttributeType) -> Vec<i32> {
+    let [width, height] = texture.size().map(|side| side as i32);
+    let data = texture.about().data.unwrap_or([0, 0, width - 1, height - 1]);
+    let size = [data[2] - data[0] + 1, data[3] - data[1] + 1];
+    let flat = |[a, b, c, d]: [i32; 4]| vec![a, b, 0, c, d, 0];
+    let display = [0, 0, width - 1, height - 1];
+    match (name, ty) {
+        ("resolution", AttributeType::Ints(2)) => size.to_vec(),
+        ("resolution", AttributeType::Ints(3)) => vec![size[0], size[1], 1],
+        ("datawindow", AttributeType::Ints(4)) => data.to_vec(),
+        ("datawindow", AttributeType::Ints(6)) => flat(data),
+        ("displaywindow", AttributeType::Ints(4)) => display.to_vec(),
+        ("displaywindow", AttributeType::Ints(6)) => flat(display),
+        ("channels", AttributeType::Ints(1)) => vec![texture.channels() as i32],
+        ("subimages" | "miplevels", AttributeType::Ints(1)) => vec![1],
+        _ => Vec::new(),
+    }
+}
+
+/// Numbers that are known of a texture; none where that is none of them. The mean color is what the file says it is, or else that of the
+/// picture; a constant one only what the file says.
+fn known_floats(texture: &Texture, name: &str, ty: AttributeType) -> Vec<f32> {
+    let channels = texture.channels();
+    let average = || texture.about().numbers("oiio:AverageColor").unwrap_or_else(|| texture.mean().to_vec());
+    let constant = || texture.about().numbers("oiio:ConstantColor").unwrap_or_default();
+    let color = |numbers: Vec<f32>, count: u32| match numbers.is_empty() {
+        true => numbers,
+        false => (0..count as usize).map(|c| numbers.get(c).copied().unwrap_or(0.0)).collect(),
+    };
+    let alpha = |numbers: Vec<f32>| numbers.get(3).copied().into_iter().collect();
+    match (name, ty) {
+        ("channels", AttributeType::Floats(1)) => vec![channels as f32],
+        ("averagecolor", AttributeType::Floats(count)) => color(average(), count),
+        ("averagealpha", AttributeType::Floats(1)) if channels == 4 => alpha(average()),
+        ("constantcolor", AttributeType::Floats(count)) => color(constant(), count),
+        ("constantalpha", AttributeType::Floats(1)) if channels == 4 => alpha(constant()),
+        _ => Vec::new(),
+    }
+}
+
+/// A text that is known of a texture.
+fn known_text(texture: &Texture, name: &str) -> Option<String> {
+    match name {
+        "type" => Some("texture".to_owned()),
+        "texturetype" | "textureformat" => Some("Plain Texture".to_owned()),
+        "wrapmodes" => Some(texture.wrap().map(Wrap::name).join(",")),
+        _ => texture.about().text(name).map(str::to_owned),
     }
 }
 
@@ -302,9 +337,8 @@ fn sampled(
     if covers {
         (value[n], dx[n], dy[n]) = (1.0, 0.0, 0.0);
     }
-    if let Some(space) = how.space.filter(|_| n == 3) {
-        let to = ColorSpace::from_name("linear").unwrap_or(space);
-        let linear = |c: [f32; 3]| transformc(space, to, c);
+    if let Some((space, rgb)) = how.space.filter(|_| n == 3) {
+        let linear = |c: [f32; 3]| transformc(rgb, space, ColorSpace::Rgb, c);
         let old = [value[0], value[1], value[2]];
         let new = linear(old);
         for slope in [&mut dx, &mut dy] {

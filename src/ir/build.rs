@@ -18,7 +18,7 @@ enum Key {
     FloatToInt(Reg),
     Select(Reg, Reg, Reg),
     Derivative(Reg, bool),
-    Clamped(Reg, u32, u32),
+    Clamped(Reg, u32, bool, u32),
 }
 
 /// Builds a program.
@@ -269,10 +269,10 @@ impl Builder {
     }
 
     /// An index kept inside `0..len`, and reported when it is outside
-    pub fn clamped(&mut self, a: Reg, len: u32, span: velour_grammar::Span) -> Reg {
-        let routine = Routine::ClampIndex(len);
+    pub fn clamped(&mut self, a: Reg, len: u32, written: bool, span: velour_grammar::Span) -> Reg {
+        let routine = Routine::ClampIndex { len, written };
         // Each place that looks outside is told of, so what is shared is of one place.
-        self.value(Key::Clamped(a, len, span.first), Kind::Int, &[a], |dst| Instr::Call {
+        self.value(Key::Clamped(a, len, written, span.first), Kind::Int, &[a], |dst| Instr::Call {
             routine,
             dst: vec![dst],
             src: vec![a],

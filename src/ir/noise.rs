@@ -73,18 +73,25 @@ pub struct Noise {
     pub periodic: bool,
     /// True when the partial derivatives follow the values, coordinate by coordinate.
     pub gradient: bool,
+    /// True when the change of up to three coordinates along x, then along y, follows all else that it reads: Gabor noise is filtered.
+    pub filtered: bool,
 }
 
 impl Noise {
     /// Is there such a noise? Not every number of coordinates and results has one.
     pub fn exists(self) -> bool {
         let shape = (1..=4).contains(&self.dims) && matches!(self.outputs, 1 | 3);
-        shape && (!self.periodic || self.kind.repeats()) && (!self.gradient || self.kind.has_gradient())
+        shape
+            && (!self.filtered || self.kind == NoiseKind::Gabor)
+            && (!self.periodic || self.kind.repeats())
+            && (!self.gradient || self.kind.has_gradient())
     }
 
-    /// How many registers it reads: coordinates, then periods.
+    /// How many registers it reads: coordinates, then periods, of Gabor noise its options and what it is filtered over.
     pub fn reads(self) -> u32 {
-        u32::from(self.dims) * if self.periodic { 2 } else { 1 } + if self.kind == NoiseKind::Gabor { 6 } else { 0 }
+        let options = if self.kind == NoiseKind::Gabor { 6 } else { 0 };
+        let pixel = if self.filtered { 2 * u32::from(self.dims.min(3)) } else { 0 };
+        u32::from(self.dims) * if self.periodic { 2 } else { 1 } + options + pixel
     }
 
     /// How many registers it writes: values, then partial derivatives.

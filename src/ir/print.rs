@@ -163,10 +163,10 @@ fn input_name(input: Input) -> String {
 fn routine_name(routine: &Routine) -> String {
     match routine {
         Routine::Noise(noise) => {
-            let Noise { kind, dims, outputs, periodic, gradient } = noise;
-            let (periodic, gradient) =
-                (if *periodic { " periodic" } else { "" }, if *gradient { " gradient" } else { "" });
-            format!("noise {}{dims}x{outputs}{periodic}{gradient}", snake(&format!("{kind:?}")))
+            let Noise { kind, dims, outputs, periodic, gradient, filtered } = noise;
+            let words = [(periodic, " periodic"), (gradient, " gradient"), (filtered, " filtered")];
+            let words: String = words.iter().filter(|(on, _)| **on).map(|(_, word)| *word).collect();
+            format!("noise {}{dims}x{outputs}{words}", snake(&format!("{kind:?}")))
         }
         Routine::Format(format) => format!("format {:?}", format.text),
         Routine::Print(to, format) => format!("print {} {:?}", snake(&format!("{to:?}")), format.text),

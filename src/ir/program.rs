@@ -9,6 +9,7 @@ use super::op::*;
 use crate::lang::closures::ClosureId;
 use crate::lang::symbols::Symbol;
 use crate::lang::types::Type;
+use crate::ops::working_space::WorkingSpace;
 use velour_grammar::Span;
 
 pub use super::kind::Kind;
@@ -235,6 +236,8 @@ pub struct Program {
     pub result: Option<Reg>,
     /// Named results.
     pub outputs: Vec<Output>,
+    /// What RGB means.
+    pub working_space: WorkingSpace,
     /// Instructions there were before the optimizer; 0 in a program it has not seen.
     pub lowered: usize,
 }

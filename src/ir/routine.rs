@@ -22,7 +22,14 @@ pub enum Routine {
     /// The matrix from one named space to another: two symbols to 16 floats and an int that is 1 when both are known.
     SpaceMatrix,
     /// The number of a component, kept inside `0..n`; one that is outside is reported.
-    ClampIndex(u32),
+    ClampIndex {
+        /// How many components there are.
+        len: u32,
+        /// True where the component is written: a mistake there is told even if nobody reads what was written.
+        written: bool,
+    },
+    /// Floats that are assigned, and reported where they are no finite numbers.
+    CheckFinite(Box<Watch>),
     /// `hash` of an int.
     HashInt,
     /// `hash` of 1 to 4 floats.
@@ -175,6 +182,17 @@ pub enum Slopes {
     Given,
 }
 
+/// An assignment that is watched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watch {
+    /// The variable that is assigned.
+    pub variable: String,
+    /// What computes its value, by OSL's name.
+    pub operation: &'static str,
+    /// How many floats it is given.
+    pub count: u32,
+}
+
 /// What a routine does besides giving results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
@@ -241,10 +259,15 @@ impl Routine {
                 pure(takes, smallvec![(Float, results)])
             }
             Routine::SpaceMatrix => {
-                let reach = Reach::Host;
-                Declaration { reach, ..pure(smallvec![(String, 2)], smallvec![(Float, 16), (Int, 1)]) }
+                Declaration { reach: Reach::Host, ..pure(smallvec![(String, 2)], smallvec![(Float, 16), (Int, 1)]) }
             }
-            Routine::ClampIndex(_) | Routine::HashInt => pure(one(Int), one(Int)),
+            Routine::ClampIndex { written: true, .. } => {
+                Declaration { effect: Effect::Prints, ..pure(one(Int), one(Int)) }
+            }
+            Routine::ClampIndex { .. } | Routine::HashInt => pure(one(Int), one(Int)),
+            Routine::CheckFinite(watch) => {
+                Declaration { effect: Effect::Prints, ..pure(smallvec![(Float, watch.count)], Kinds::new()) }
+            }
             Routine::HashFloats(count) => pure(smallvec![(Float, *count)], one(Int)),
             Routine::HashString | Routine::Strlen | Routine::Stoi => pure(one(String), one(Int)),
             Routine::GetChar => pure(smallvec![(String, 1), (Int, 1)], one(Int)),
@@ -312,9 +335,10 @@ impl Routine {
         match self {
             Routine::Noise(noise) => noise.exists(),
             Routine::HashFloats(count) => (1..=4).contains(count),
-            Routine::ClampIndex(len) => (1..=i32::MAX as u32).contains(len),
+            Routine::ClampIndex { len, .. } => (1..=i32::MAX as u32).contains(len),
             Routine::Attribute(attribute) => !attribute.slopes || matches!(attribute.ty, AttributeType::Floats(_)),
             Routine::Smooth(_) | Routine::Slope(_) | Routine::SpaceMatrix | Routine::HashInt => true,
+            Routine::CheckFinite(watch) => watch.count > 0,
             Routine::HashString | Routine::Strlen | Routine::GetChar | Routine::StartsWith => true,
             Routine::EndsWith | Routine::Substr | Routine::Concat | Routine::Stof | Routine::Stoi => true,
             Routine::Regex { .. } | Routine::Split(_) | Routine::Format(_) | Routine::Print(..) => true,
@@ -333,7 +357,8 @@ impl Routine {
             Routine::Smooth(function) => function.name(),
             Routine::Slope(function) => function.slope_name(),
             Routine::SpaceMatrix => "space_matrix",
-            Routine::ClampIndex(_) => "clamp_index",
+            Routine::ClampIndex { .. } => "clamp_index",
+            Routine::CheckFinite(_) => "check_finite",
             Routine::HashInt => "hash_int",
             Routine::HashFloats(_) => "hash_floats",
             Routine::HashString => "hash_string",

@@ -1,26 +1,12 @@
 //! Colour: luminance, black bodies, single wavelengths and the colour spaces of `transformc`.
 //!
-//! RGB means linear light with the primaries and the white of Rec. 709, which is what OSL assumes unless told otherwise.
+//! RGB means linear light with the primaries and the white of the working space, which is Rec. 709 unless told otherwise.
 
 use super::arithmetic::{div, max, min, pow};
 use super::matching::CIE_1931;
+use super::working_space::WorkingSpace;
 use crate::math::elementary::{cbrt, expm1, floor, pow_positive};
-use std::sync::LazyLock;
-
-/// Rows X, Y, Z of Rec. 709 red, green and blue: `xyz = rgb M`. Derived in `f64` from the chromaticities (0.64, 0.33),
-/// (0.30, 0.60), (0.15, 0.06) and white (0.3127, 0.3291), which OSL uses; ITU-R BT.709 has the white at (0.3127, 0.3290).
-const RGB_TO_XYZ: [[f32; 3]; 3] = [
-    [0.412_135_33, 0.212_507_28, 0.019_318_843],
-    [0.357_675, 0.715_35, 0.119_225],
-    [0.180_356_8, 0.072_142_72, 0.949_879_1],
-];
-
-/// The inverse of [`RGB_TO_XYZ`].
-const XYZ_TO_RGB: [[f32; 3]; 3] = [
-    [3.242_979, -0.968_998, 0.055_668_324],
-    [-1.538_336_2, 1.875_492, -0.204_117_2],
-    [-0.498_919_84, 0.041_544_524, 1.057_698_2],
-];
+use std::sync::OnceLock;
 
 /// NTSC's luma and chroma axes, as in Foley and van Dam: `yiq = rgb M`.
 const RGB_TO_YIQ: [[f32; 3]; 3] = [[0.299, 0.596, 0.212], [0.587, -0.275, -0.523], [0.114, -0.321, 0.311]];
@@ -31,15 +17,6 @@ const YIQ_TO_RGB: [[f32; 3]; 3] = [[1.0, 1.0, 1.0], [0.9557, -0.2716, -1.1082], 
 #[inline(always)]
 fn times(c: [f32; 3], m: &[[f32; 3]; 3]) -> [f32; 3] {
     [0, 1, 2].map(|k| c[0] * m[0][k] + c[1] * m[1][k] + c[2] * m[2][k])
-}
-
-/// The weights of [`luminance`], for its derivative: it is linear.
-pub const LUMINANCE_WEIGHTS: [f32; 3] = [0.212_507_28, 0.715_35, 0.072_142_72];
-
-/// The luminance of linear RGB, Y of CIE XYZ.
-#[inline(always)]
-pub fn luminance(rgb: [f32; 3]) -> f32 {
-    rgb[0] * LUMINANCE_WEIGHTS[0] + rgb[1] * LUMINANCE_WEIGHTS[1] + rgb[2] * LUMINANCE_WEIGHTS[2]
 }
 
 fn without_negatives(rgb: [f32; 3]) -> [f32; 3] {
@@ -53,27 +30,33 @@ const HOTTEST: f32 = 12_000.0;
 /// Entries so that the last lies beyond [`HOTTEST`]: 2 * 316^1.5 + 800 = 12034.
 const ENTRIES: usize = 318;
 
-/// Fifth roots of black-body colours at the temperatures 2 i^1.5 + 800.
-static BLACKBODY: LazyLock<[[f32; 3]; ENTRIES]> = LazyLock::new(|| {
-    std::array::from_fn(|i| {
-        let i = i as f32;
-        blackbody_by_integral(i * i.sqrt() * 2.0 + COLDEST).map(|c| pow(c, 0.2))
+/// Fifth roots of black-body colours at the temperatures 2 i^1.5 + 800, for each working space that is asked for.
+static BLACKBODY: [OnceLock<[[f32; 3]; ENTRIES]>; WorkingSpace::ALL.len()] =
+    [const { OnceLock::new() }; WorkingSpace::ALL.len()];
+
+fn blackbody_table(space: WorkingSpace) -> &'static [[f32; 3]; ENTRIES] {
+    BLACKBODY[space as usize].get_or_init(|| {
+        std::array::from_fn(|i| {
+            let i = i as f32;
+            blackbody_by_integral(space, i * i.sqrt() * 2.0 + COLDEST).map(|c| pow(c, 0.2))
+        })
     })
-});
+}
 
 /// The colour of a black body by Planck's law, integrated over the visible range in steps of 5 nm.
-fn blackbody_by_integral(kelvin: f32) -> [f32; 3] {
-    without_negatives(times(planck(|c, x| c / expm1(x), kelvin), &XYZ_TO_RGB))
+fn blackbody_by_integral(space: WorkingSpace, kelvin: f32) -> [f32; 3] {
+    without_negatives(times(planck(|c, x| c / expm1(x), kelvin), &space.matrices().from_xyz))
 }
 
 /// The change of [`blackbody_by_integral`] when the temperature changes by a kelvin.
-fn blackbody_by_integral_slope(kelvin: f32) -> [f32; 3] {
+fn blackbody_by_integral_slope(space: WorkingSpace, kelvin: f32) -> [f32; 3] {
     // The derivative of 1 / expm1(x) by T, where x is as 1 / T, is x / T times e^x / expm1(x)^2.
     let slope = |c: f32, x: f32| {
         let below = expm1(x);
         c * (1.0 + 1.0 / below) / below * x / kelvin
     };
-    let (value, slope) = (blackbody_by_integral(kelvin), times(planck(slope, kelvin), &XYZ_TO_RGB));
+    let (value, slope) =
+        (blackbody_by_integral(space, kelvin), times(planck(slope, kelvin), &space.matrices().from_xyz));
     [0, 1, 2].map(|k| if value[k] > 0.0 { slope[k] } else { 0.0 })
 }
 
@@ -99,12 +82,12 @@ fn planck(part: impl Fn(f32, f32) -> f32, kelvin: f32) -> [f32; 3] {
 ///
 /// Source: OSL, with its table of fifth roots, interpolated, good to 0.1 %; the integral itself above 12000 K.
 /// Domain: kelvin. Gives: non-negative. Degenerate cases: a trace of red below 800 K and for NaN.
-pub fn blackbody(kelvin: f32) -> [f32; 3] {
+pub fn blackbody(space: WorkingSpace, kelvin: f32) -> [f32; 3] {
     if kelvin >= HOTTEST {
-        return blackbody_by_integral(kelvin);
+        return blackbody_by_integral(space, kelvin);
     }
     if kelvin >= COLDEST {
-        let (a, b, t, _) = table_place(kelvin);
+        let (a, b, t, _) = table_place(space, kelvin);
         return [0, 1, 2].map(|k| {
             let fifth_root = a[k] * (1.0 - t) + b[k] * t;
             let square = fifth_root * fifth_root;
@@ -115,20 +98,21 @@ pub fn blackbody(kelvin: f32) -> [f32; 3] {
 }
 
 /// Between which two entries of the table a temperature falls, where, and the cube root that its place is the square of.
-fn table_place(kelvin: f32) -> ([f32; 3], [f32; 3], f32, f32) {
+fn table_place(space: WorkingSpace, kelvin: f32) -> ([f32; 3], [f32; 3], f32, f32) {
     let root = cbrt((kelvin - COLDEST) / 2.0);
     let place = root * root;
     let first = (place as usize).min(ENTRIES - 2);
-    (BLACKBODY[first], BLACKBODY[first + 1], place - first as f32, root)
+    let table = blackbody_table(space);
+    (table[first], table[first + 1], place - first as f32, root)
 }
 
 /// The change of [`blackbody`] when the temperature changes by a kelvin; 0 where it is constant.
-pub fn blackbody_slope(kelvin: f32) -> [f32; 3] {
+pub fn blackbody_slope(space: WorkingSpace, kelvin: f32) -> [f32; 3] {
     if kelvin >= HOTTEST {
-        return blackbody_by_integral_slope(kelvin);
+        return blackbody_by_integral_slope(space, kelvin);
     }
     if kelvin >= COLDEST {
-        let (a, b, t, root) = table_place(kelvin);
+        let (a, b, t, root) = table_place(space, kelvin);
         // The place is ((T - coldest) / 2)^(2/3).
         let step = div(1.0, 3.0 * root);
         return [0, 1, 2].map(|k| {
@@ -144,7 +128,7 @@ pub fn blackbody_slope(kelvin: f32) -> [f32; 3] {
 ///
 /// Source: CIE 1931 colour matching, interpolated, over 2.52 as in OSL. Domain: nanometres. Gives: non-negative.
 /// Degenerate cases: black outside [380, 780) and for NaN.
-pub fn wavelength_color(nanometres: f32) -> [f32; 3] {
+pub fn wavelength_color(space: WorkingSpace, nanometres: f32) -> [f32; 3] {
     let place = (nanometres - 380.0) / 5.0;
     // Truncation towards zero lets the 5 nm below 380 extrapolate, as in OSL.
     if !(place > -1.0 && place < 80.0) {
@@ -153,18 +137,18 @@ pub fn wavelength_color(nanometres: f32) -> [f32; 3] {
     let first = place as usize;
     let t = place - first as f32;
     let xyz = [0, 1, 2].map(|k| CIE_1931[first][k] * (1.0 - t) + CIE_1931[first + 1][k] * t);
-    without_negatives(times(xyz, &XYZ_TO_RGB).map(|c| c * (1.0 / 2.52)))
+    without_negatives(times(xyz, &space.matrices().from_xyz).map(|c| c * (1.0 / 2.52)))
 }
 
 /// The change of [`wavelength_color`] when the wavelength changes by a nanometre; 0 where a channel is.
-pub fn wavelength_color_slope(nanometres: f32) -> [f32; 3] {
+pub fn wavelength_color_slope(space: WorkingSpace, nanometres: f32) -> [f32; 3] {
     let place = (nanometres - 380.0) / 5.0;
     if !(place > -1.0 && place < 80.0) {
         return [0.0; 3];
     }
     let first = place as usize;
     let xyz = [0, 1, 2].map(|k| (CIE_1931[first + 1][k] - CIE_1931[first][k]) / 5.0);
-    let (value, slope) = (wavelength_color(nanometres), times(xyz, &XYZ_TO_RGB));
+    let (value, slope) = (wavelength_color(space, nanometres), times(xyz, &space.matrices().from_xyz));
     [0, 1, 2].map(|k| if value[k] > 0.0 { slope[k] * (1.0 / 2.52) } else { 0.0 })
 }
 
@@ -203,15 +187,15 @@ impl ColorSpace {
     }
 }
 
-/// A colour in another space.
-pub fn transformc(from: ColorSpace, to: ColorSpace, c: [f32; 3]) -> [f32; 3] {
+/// A colour in another space, where RGB is that of the working space.
+pub fn transformc(space: WorkingSpace, from: ColorSpace, to: ColorSpace, c: [f32; 3]) -> [f32; 3] {
     let rgb = match from {
         ColorSpace::Rgb => c,
         ColorSpace::Hsv => hsv_to_rgb(c),
         ColorSpace::Hsl => hsl_to_rgb(c),
         ColorSpace::Yiq => times(c, &YIQ_TO_RGB),
-        ColorSpace::Xyz => times(c, &XYZ_TO_RGB),
-        ColorSpace::XyY => times(xyy_to_xyz(c), &XYZ_TO_RGB),
+        ColorSpace::Xyz => times(c, &space.matrices().from_xyz),
+        ColorSpace::XyY => times(xyy_to_xyz(c), &space.matrices().from_xyz),
         ColorSpace::Srgb => c.map(srgb_to_linear),
     };
     match to {
@@ -219,8 +203,8 @@ pub fn transformc(from: ColorSpace, to: ColorSpace, c: [f32; 3]) -> [f32; 3] {
         ColorSpace::Hsv => rgb_to_hsv(rgb),
         ColorSpace::Hsl => rgb_to_hsl(rgb),
         ColorSpace::Yiq => times(rgb, &RGB_TO_YIQ),
-        ColorSpace::Xyz => times(rgb, &RGB_TO_XYZ),
-        ColorSpace::XyY => xyz_to_xyy(times(rgb, &RGB_TO_XYZ)),
+        ColorSpace::Xyz => times(rgb, &space.matrices().to_xyz),
+        ColorSpace::XyY => xyz_to_xyy(times(rgb, &space.matrices().to_xyz)),
         ColorSpace::Srgb => rgb.map(linear_to_srgb),
     }
 }
@@ -315,6 +299,8 @@ pub fn xyy_to_xyz([x, y, luminance]: [f32; 3]) -> [f32; 3] {
 mod tests {
     use super::*;
 
+    const REC: WorkingSpace = WorkingSpace::Rec709;
+
     const SPACES: [&str; 7] = ["rgb", "hsv", "hsl", "YIQ", "XYZ", "xyY", "sRGB"];
 
     #[track_caller]
@@ -329,7 +315,7 @@ mod tests {
         for c in [[0.2, 0.5, 0.7], [0.9, 0.1, 0.3], [0.4, 0.4, 0.4], [0.02, 0.9, 0.6], [0.001, 0.002, 0.003]] {
             for name in SPACES {
                 let space = ColorSpace::from_name(name).expect("all seven are known");
-                let back = transformc(space, ColorSpace::Rgb, transformc(ColorSpace::Rgb, space, c));
+                let back = transformc(REC, space, ColorSpace::Rgb, transformc(REC, ColorSpace::Rgb, space, c));
                 // The inverse of YIQ has four digits.
                 near(back, c, if name == "YIQ" { 1e-3 } else { 2e-6 });
             }
@@ -342,31 +328,30 @@ mod tests {
         near(hsv_to_rgb([1.0 / 3.0, 1.0, 1.0]), [0.0, 1.0, 0.0], 1e-6);
         near(rgb_to_hsv([0.0, 0.0, 0.5]), [2.0 / 3.0, 1.0, 0.5], 1e-6);
         near(rgb_to_hsl([1.0, 0.0, 0.0]), [0.0, 1.0, 0.5], 1e-6);
-        near(transformc(ColorSpace::Rgb, ColorSpace::XyY, [1.0; 3]), [0.3127, 0.3291, 1.0], 1e-5);
+        near(transformc(REC, ColorSpace::Rgb, ColorSpace::XyY, [1.0; 3]), [0.3127, 0.3291, 1.0], 1e-5);
         near([srgb_to_linear(0.5); 3], [0.214_041_14; 3], 1e-6);
         near([linear_to_srgb(0.214_041_14); 3], [0.5; 3], 1e-6);
-        assert!((luminance([1.0; 3]) - 1.0).abs() < 1e-6);
     }
 
     #[test]
     fn black_bodies_glow() {
-        assert_eq!(blackbody(300.0), [1e-6, 0.0, 0.0]);
+        assert_eq!(blackbody(REC, 300.0), [1e-6, 0.0, 0.0]);
         for kelvin in [1000.0, 2700.0, 5000.0, 6504.0, 11_999.0] {
-            near(blackbody(kelvin), blackbody_by_integral(kelvin), 1e-3);
+            near(blackbody(REC, kelvin), blackbody_by_integral(REC, kelvin), 1e-3);
         }
-        let white = blackbody(6504.0);
+        let white = blackbody(REC, 6504.0);
         assert!((white[0] / white[2] - 1.0).abs() < 0.05, "6504 K is nearly the white of Rec. 709: {white:?}");
         for kelvin in [f32::NAN, f32::INFINITY, -1.0, 800.0, 12_000.0, 1e30] {
-            let _ = blackbody(kelvin);
+            let _ = blackbody(REC, kelvin);
         }
     }
 
     #[test]
     fn wavelengths_have_their_colours() {
-        let [red, green, blue] = [650.0, 530.0, 450.0].map(wavelength_color);
+        let [red, green, blue] = [650.0, 530.0, 450.0].map(|x| wavelength_color(REC, x));
         assert!(red[0] > 5.0 * red[1] && green[1] > green[0] && blue[2] > blue[0]);
         for nanometres in [379.0, 100.0, 780.0, f32::NAN, f32::INFINITY] {
-            assert!(wavelength_color(nanometres)[0] < 1e-3);
+            assert!(wavelength_color(REC, nanometres)[0] < 1e-3);
         }
     }
 }

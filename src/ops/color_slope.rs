@@ -5,27 +5,28 @@
 
 use super::arithmetic::{div, max, min};
 use super::color::*;
+use super::working_space::WorkingSpace;
 use crate::math::elementary::{floor, pow_positive};
 
-/// The change of `transformc(from, to, c)` when `c` moves by `d`.
-pub fn transformc_slope(from: ColorSpace, to: ColorSpace, c: [f32; 3], d: [f32; 3]) -> [f32; 3] {
-    let linear = |d: [f32; 3]| transformc(from, ColorSpace::Rgb, d);
+/// The change of `transformc(space, from, to, c)` when `c` moves by `d`.
+pub fn transformc_slope(space: WorkingSpace, from: ColorSpace, to: ColorSpace, c: [f32; 3], d: [f32; 3]) -> [f32; 3] {
+    let linear = |d: [f32; 3]| transformc(space, from, ColorSpace::Rgb, d);
     let to_rgb = match from {
         ColorSpace::Rgb => d,
         ColorSpace::Hsv => hsv_to_rgb_slope(c, d),
         ColorSpace::Hsl => hsl_to_rgb_slope(c, d),
         ColorSpace::Yiq | ColorSpace::Xyz => linear(d),
-        ColorSpace::XyY => transformc(ColorSpace::Xyz, ColorSpace::Rgb, xyy_to_xyz_slope(c, d)),
+        ColorSpace::XyY => transformc(space, ColorSpace::Xyz, ColorSpace::Rgb, xyy_to_xyz_slope(c, d)),
         ColorSpace::Srgb => [0, 1, 2].map(|k| d[k] * srgb_slope(c[k])),
     };
-    let rgb = transformc(from, ColorSpace::Rgb, c);
+    let rgb = transformc(space, from, ColorSpace::Rgb, c);
     match to {
         ColorSpace::Rgb => to_rgb,
         ColorSpace::Hsv => rgb_to_hsv_slope(rgb, to_rgb),
         ColorSpace::Hsl => rgb_to_hsl_slope(rgb, to_rgb),
-        ColorSpace::Yiq | ColorSpace::Xyz => transformc(ColorSpace::Rgb, to, to_rgb),
+        ColorSpace::Yiq | ColorSpace::Xyz => transformc(space, ColorSpace::Rgb, to, to_rgb),
         ColorSpace::XyY => {
-            let xyz = |c| transformc(ColorSpace::Rgb, ColorSpace::Xyz, c);
+            let xyz = |c| transformc(space, ColorSpace::Rgb, ColorSpace::Xyz, c);
             xyz_to_xyy_slope(xyz(rgb), xyz(to_rgb))
         }
         ColorSpace::Srgb => [0, 1, 2].map(|k| div(to_rgb[k], srgb_slope(linear_to_srgb(rgb[k])))),
@@ -120,6 +121,8 @@ fn xyy_to_xyz_slope([x, y, l]: [f32; 3], [dx, dy, dl]: [f32; 3]) -> [f32; 3] {
 mod tests {
     use super::*;
 
+    const REC: WorkingSpace = WorkingSpace::Rec709;
+
     #[test]
     fn slopes_agree_with_differences() {
         let names = ["rgb", "hsv", "hsl", "YIQ", "XYZ", "xyY", "sRGB"];
@@ -128,12 +131,12 @@ mod tests {
             let (from, to) = (ColorSpace::from_name(from).unwrap(), ColorSpace::from_name(to).unwrap());
             for (c, d) in places.into_iter().flat_map(|c| [[1.0, 0.0, 0.0], [0.3, -0.7, 0.2]].map(|d| (c, d))) {
                 // Beyond the gamut some formulas have poles that no difference can follow.
-                if transformc(from, ColorSpace::Rgb, c).iter().any(|&x| !(0.02..0.98).contains(&x)) {
+                if transformc(REC, from, ColorSpace::Rgb, c).iter().any(|&x| !(0.02..0.98).contains(&x)) {
                     continue;
                 }
                 let h = 1e-3;
-                let at = |s: f32| transformc(from, to, [0, 1, 2].map(|k| c[k] + s * d[k]));
-                let (left, right, slope) = (at(-h), at(h), transformc_slope(from, to, c, d));
+                let at = |s: f32| transformc(REC, from, to, [0, 1, 2].map(|k| c[k] + s * d[k]));
+                let (left, right, slope) = (at(-h), at(h), transformc_slope(REC, from, to, c, d));
                 for k in 0..3 {
                     let want = (right[k] - left[k]) / (2.0 * h);
                     assert!(

@@ -15,6 +15,7 @@
 //! | regular expressions | [`pattern`] |
 //! | splines and their inverse | [`spline`] |
 //! | strings | [`string`] |
+//! | the primaries and the white of RGB | [`working_space`] |
 
 pub mod arithmetic;
 pub mod color;
@@ -29,3 +30,4 @@ pub mod matrix;
 pub mod pattern;
 pub mod spline;
 pub mod string;
+pub mod working_space;

@@ -35,6 +35,14 @@ fn needed(program: &Program) -> Vec<bool> {
     live.nodes
 }
 
+/// Is an index known to be inside an array?
+fn inside(program: &Program, index: Reg, array: ArrayId) -> bool {
+    match program.regs[index.0 as usize].source {
+        Source::Const(Const::Int(at)) => (0..i64::from(program.arrays[array.0 as usize].len)).contains(&i64::from(at)),
+        Source::Const(_) | Source::Input(_) | Source::Code => false,
+    }
+}
+
 impl Live<'_> {
     fn roots(&mut self, program: &Program) {
         program.result.iter().for_each(|&reg| self.reg(reg));
@@ -46,6 +54,8 @@ impl Live<'_> {
         }
         for node in 0..self.flow.nodes.len() {
             let root = match self.flow.nodes[node].node {
+                // An index that may be outside is a mistake to hear of, whether or not the array is read.
+                Node::Instr(Instr::ArraySet { array, index, .. }) => !inside(program, *index, *array),
                 Node::Instr(instr) => instr.has_effect(),
                 // A loop without effect may still run for ever, which is the user's mistake to hear of; it stays.
                 Node::Loop { .. } | Node::Leave(_) => true,

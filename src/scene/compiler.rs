@@ -6,7 +6,7 @@ use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage
 use super::nearest::nearest;
 use super::shipped::shipped;
 use super::source::within;
-use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Shader};
+use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Recipe, Shader};
 use crate::exec::Group;
 use crate::ir::lower::Binding;
 use crate::lang::path::root;
@@ -82,7 +82,13 @@ impl ShaderFiles {
         } else {
             let folders: Vec<String> = search.iter().map(|folder| folder.display().to_string()).collect();
             let problem = SceneProblem::ShaderNotFound { shader: layer.shader.clone() };
-            let help = format!("no `{}.osl` in {}; add folders with --path", layer.shader, folders.join(", "));
+            let code = search.iter().map(|folder| within(folder, &format!("{}.oso", layer.shader)));
+            let help = match code.into_iter().find(|path| self.compiler.options.access.is_file(path)) {
+                Some(code) => {
+                    format!("{} is code for OSL's tools; velour needs the text, `{}.osl`", code.display(), layer.shader)
+                }
+                None => format!("no `{}.osl` in {}; add folders with --path", layer.shader, folders.join(", ")),
+            };
             return Err(SceneError::at(layer.place.clone(), problem).with_help(help));
         };
         compiled.map_err(|error| {
@@ -120,8 +126,8 @@ impl ShaderFiles {
     }
 }
 
-/// The file of a shader: `name.osl` or `name` in one of the folders, or `name` as a path; else a file of one of the folders that
-/// declares a shader of this name, the first by its own.
+/// The file of a shader: in one of the folders `name.oso`, where velour has written it, `name.osl` or `name`, or `name` as a path; else a
+/// file of one of the folders that declares a shader of this name, the first by its own.
 pub fn find_shader(name: &str, search: &[PathBuf], access: &Access) -> Option<PathBuf> {
     let bare = name.strip_suffix(".oso").unwrap_or(name);
     let declared = || search.iter().find_map(|folder| declared_in(folder, access).remove(bare));
@@ -130,10 +136,16 @@ pub fn find_shader(name: &str, search: &[PathBuf], access: &Access) -> Option<Pa
 
 fn find_named(name: &str, search: &[PathBuf], access: &Access) -> Option<PathBuf> {
     let name = name.strip_suffix(".oso").unwrap_or(name);
-    let with_extension = if name.ends_with(".osl") { name.to_owned() } else { format!("{name}.osl") };
-    let mut candidates =
-        search.iter().map(|folder| within(folder, &with_extension)).chain([PathBuf::from(&with_extension)]);
-    candidates.find(|path| access.is_file(path))
+    let text = name.ends_with(".osl");
+    let with_extension = if text { name.to_owned() } else { format!("{name}.osl") };
+    let made = (!text).then(|| format!("{name}.oso"));
+    // Who has compiled a shader has said how: with these macros.
+    let recipe = |path: &PathBuf| Recipe::of_file(path, access).is_some();
+    let pair = |of: &dyn Fn(&str) -> PathBuf| {
+        let made = made.as_deref().map(of).filter(recipe);
+        made.or_else(|| Some(of(&with_extension)).filter(|path| access.is_file(path)))
+    };
+    search.iter().find_map(|folder| pair(&|name| within(folder, name))).or_else(|| pair(&|name| PathBuf::from(name)))
 }
 
 /// The shaders that the files of a folder declare; of several of one name the first, in the order of the files' names.

@@ -1,9 +1,10 @@
 //! Texture files: PNG, JPEG, HDR, TIFF (tiled and with levels, as `maketx` writes them) and EXR (with levels).
 
+use super::about::About;
 use super::pyramid::Texture;
 use super::texels::{Level, Texels};
 use super::wrap::Wrap;
-use crate::limits::TEXTURE_BYTES;
+use crate::limits::{ABOUT_BYTES, TEXTURE_BYTES};
 use exr::prelude as exr;
 use std::fmt;
 use std::fs::File;
@@ -132,7 +133,7 @@ fn read_tiff(file: BufReader<File>, budget: u64) -> Result<Texture, String> {
     let failed = |error: tiff::TiffError| error.to_string();
     let mut decoder = Decoder::new(file).map_err(failed)?.with_limits(Limits::unlimited());
     let (mut levels, mut of_all): (Vec<Level>, usize) = (Vec::new(), 0);
-    let mut wrap = [Wrap::default(); 2];
+    let (mut wrap, mut about) = ([Wrap::default(); 2], About::default());
     loop {
         let (width, height) = decoder.dimensions().map_err(failed)?;
         let (width, height) = (width as usize, height as usize);
@@ -149,7 +150,11 @@ fn read_tiff(file: BufReader<File>, budget: u64) -> Result<Texture, String> {
         let left = levels.iter().fold(budget, |left, level| left.saturating_sub(level.bytes() as u64));
         sized(width, height, layout.bytes, left)?;
         if levels.is_empty() {
-            wrap = tiff_wrap(&mut decoder);
+            let mut texts = Limits::unlimited();
+            texts.ifd_value_size = ABOUT_BYTES;
+            decoder = decoder.with_limits(texts);
+            (wrap, about) = (tiff_wrap(&mut decoder), tiff_about(&mut decoder));
+            decoder = decoder.with_limits(Limits::unlimited());
         }
         let mut all = DecodingResult::U8(Vec::new());
         let whole = decoder.read_image_to_buffer(&mut all).map_err(failed)?;
@@ -180,7 +185,28 @@ fn read_tiff(file: BufReader<File>, budget: u64) -> Result<Texture, String> {
     if levels.is_empty() {
         return Err("it has no texels".to_owned());
     }
-    Ok(Texture::of_levels(levels, of_all).with_wrap(wrap))
+    Ok(Texture::of_levels(levels, of_all).with_wrap(wrap).with_about(about))
+}
+
+/// The texts of a TIFF.
+fn tiff_about<R: std::io::Read + std::io::Seek>(decoder: &mut tiff::decoder::Decoder<R>) -> About {
+    use tiff::tags::Tag;
+    let mut about = About::default();
+    let tags = [
+        (Tag::DateTime, "DateTime"),
+        (Tag::Software, "Software"),
+        (Tag::Artist, "Artist"),
+        (Tag::Copyright, "Copyright"),
+        (Tag::ImageDescription, "ImageDescription"),
+    ];
+    for (tag, name) in tags {
+        if let Ok(text) = decoder.get_tag_ascii_string(tag) {
+            about.add(name, text.trim_end_matches('\0').to_owned());
+        }
+    }
+    let description = about.text("ImageDescription").unwrap_or_default().to_owned();
+    about.describe(&description);
+    about
 }
 
 /// How the numbers of a TIFF lie.
@@ -322,9 +348,20 @@ fn read_exr(mut file: BufReader<File>, budget: u64) -> Result<Texture, String> {
     if levels.is_empty() {
         return Err("it has no texels".to_owned());
     }
+    let mut about = About::default();
+    if part {
+        let first = offset.map(|x| x as i32);
+        about.data = Some([first[0], first[1], first[0] + size[0] as i32 - 1, first[1] + size[1] as i32 - 1]);
+    }
+    layer.attributes.capture_date.iter().for_each(|date| about.add("DateTime", date.to_string()));
+    for (name, value) in image.attributes.other.iter().chain(&layer.attributes.other) {
+        if let exr::AttributeValue::Text(text) = value {
+            about.add(&name.to_string(), text.to_string());
+        }
+    }
     let wrap = image.attributes.other.iter().chain(&layer.attributes.other).find_map(|(name, value)| match value {
         exr::AttributeValue::Text(text) if name.eq("wrapmodes") => Some(wrap_modes(&text.to_string())),
         _ => None,
     });
-    Ok(Texture::of_levels(levels, count).with_wrap(wrap.unwrap_or_default()))
+    Ok(Texture::of_levels(levels, count).with_wrap(wrap.unwrap_or_default()).with_about(about))
 }

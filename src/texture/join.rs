@@ -69,12 +69,12 @@ pub(super) struct Corners {
 }
 
 impl<'a> Plane<'a> {
-    /// Level `number` of a texture, of these ways outside.
+    /// A level, of these ways outside; `large` where its texels are the finest or magnified.
     #[inline(always)]
-    pub fn new(level: &'a Level, number: usize, wrap: [Wrap; 2], how: &'a Lookup) -> Self {
+    pub fn new(level: &'a Level, large: bool, wrap: [Wrap; 2], how: &'a Lookup) -> Self {
         let cubic = match how.interpolation {
             Interpolation::Cubic => true,
-            Interpolation::Smart => number == 0,
+            Interpolation::Smart => large,
             Interpolation::Closest | Interpolation::Linear => false,
         };
         let plain = !cubic && how.interpolation != Interpolation::Closest;

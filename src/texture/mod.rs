@@ -1,5 +1,6 @@
 //! Textures: pictures that shaders look up, as pyramids of levels. This room knows no language.
 
+mod about;
 mod ellipse;
 mod environment;
 #[cfg(feature = "render")]
@@ -14,6 +15,7 @@ mod texels;
 mod udim;
 mod wrap;
 
+pub use about::About;
 pub use environment::{Up, latitude_longitude};
 #[cfg(feature = "render")]
 pub use file::{TextureError, read};

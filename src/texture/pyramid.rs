@@ -1,5 +1,6 @@
 //! A texture as a pyramid of levels, of which the coarser ones are made when they are first asked for.
 
+use super::about::About;
 use super::texels::{Level, Texels};
 use super::wrap::Wrap;
 use std::sync::OnceLock;
@@ -11,6 +12,7 @@ pub struct Texture {
     size: [usize; 2],
     channels: usize,
     wrap: [Wrap; 2],
+    about: About,
 }
 
 impl Texture {
@@ -26,13 +28,24 @@ impl Texture {
         let mut levels: Vec<OnceLock<Level>> = given.into_iter().map(OnceLock::from).collect();
         levels.truncate(count as usize);
         levels.resize_with(count as usize, OnceLock::new);
-        Texture { levels, size, channels, wrap: [Wrap::default(); 2] }
+        Texture { levels, size, channels, wrap: [Wrap::default(); 2], about: About::default() }
     }
 
     /// Uses these ways where a look-up names none.
     pub fn with_wrap(mut self, wrap: [Wrap; 2]) -> Self {
         self.wrap = wrap;
         self
+    }
+
+    /// Keeps what its file says of it.
+    pub fn with_about(mut self, about: About) -> Self {
+        self.about = about;
+        self
+    }
+
+    /// What its file says of it.
+    pub fn about(&self) -> &About {
+        &self.about
     }
 
     /// Columns and rows of the finest level.
@@ -61,10 +74,10 @@ impl Texture {
         self.levels[number].get_or_init(|| self.level(number - 1).halved())
     }
 
-    /// Levels that have been made or read, and the bytes they take.
+    /// Levels that have been made or read, and the bytes they take, with those of the texts of the file.
     pub fn resident(&self) -> (usize, usize) {
         let there = self.levels.iter().filter_map(OnceLock::get);
-        there.fold((0, 0), |(count, bytes), level| (count + 1, bytes + level.bytes()))
+        there.fold((0, self.about.bytes()), |(count, bytes), level| (count + 1, bytes + level.bytes()))
     }
 
     /// The mean of up to four channels.

@@ -11,7 +11,7 @@ pub enum Interpolation {
     Linear,
     /// Bicubic, by uniform B-splines.
     Cubic,
-    /// Bicubic in the finest level, else bilinear.
+    /// Bicubic in the finest level and in those that are magnified, else bilinear.
     #[default]
     Smart,
 }

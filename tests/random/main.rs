@@ -159,7 +159,7 @@ fn programs_made_by_hand_are_refused() {
         Problem::WrongCount { of: "sources", given: 0, wanted: 16 }
     );
     assert_eq!(call(Routine::HashInt, &[], &[Reg(1)]), Problem::WrongCount { of: "results", given: 0, wanted: 1 });
-    let noise = Noise { kind: NoiseKind::Cell, dims: 9, outputs: 1, periodic: false, gradient: false };
+    let noise = Noise { kind: NoiseKind::Cell, dims: 9, outputs: 1, periodic: false, gradient: false, filtered: false };
     assert_eq!(call(Routine::Noise(noise), &[Reg(3)], &[Reg(0)]), Problem::NoRoutine("noise"));
 
     assert_eq!(problem(small(vec![Instr::Unary(Unary::Sin, Reg(3), Reg(40))])), Problem::NoRegister(Reg(40)));

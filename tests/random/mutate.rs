@@ -200,6 +200,7 @@ pub fn another(choice: &mut Choice) -> Routine {
             outputs: [1, 3, 1, 3, 2][choice.below(5)],
             periodic: choice.once_in(3),
             gradient: choice.once_in(3),
+            filtered: choice.once_in(3),
         }),
         2 => Routine::Smooth(function(choice)),
         3 => Routine::Slope(function(choice)),

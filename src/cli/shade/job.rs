@@ -23,7 +23,6 @@ struct Output {
     name: String,
     file: PathBuf,
     grid: Grid,
-    ints: bool,
 }
 
 impl Output {
@@ -77,7 +76,7 @@ impl Job {
         let threads = capped(options.threads);
         let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build()).transpose();
         let pool = pool.map_err(|error| Failure::Usage(format!("error: threads cannot be started: {error}")))?;
-        let repeats = options.settings.iter().any(|(name, value)| name == "error_repeats" && value != "0");
+        let repeats = options.is_set("error_repeats", false);
         let mut job = Job {
             ray_type: host.ray_type(&options.raytype),
             desks: (0..threads.max(1)).map(|_| Mutex::new(Desk::new(&host))).collect(),
@@ -103,8 +102,8 @@ impl Job {
             }
             let size = self.options.res;
             let values = if kept { vec![0.0; numbers * size[0] as usize * size[1] as usize] } else { Vec::new() };
-            let grid = Grid { size, channels: numbers, values };
-            self.outputs.push(Output { name: name.clone(), file: file.clone(), grid, ints });
+            let grid = Grid { size, channels: numbers, ints, values };
+            self.outputs.push(Output { name: name.clone(), file: file.clone(), grid });
         }
     }
 
@@ -177,7 +176,7 @@ impl Job {
                 let channels = output.grid.channels;
                 let name = output.name.rsplit('.').next().unwrap_or(&output.name);
                 let numbers =
-                    values[lane * channels..][..channels].iter().map(|x| format!(" {}", shown(*x, output.ints)));
+                    values[lane * channels..][..channels].iter().map(|x| format!(" {}", shown(*x, output.grid.ints)));
                 say(&format!("  {name} :{}\n", numbers.collect::<String>()));
             }
         }
@@ -217,6 +216,8 @@ impl Job {
             })?),
         };
         for output in self.outputs.iter().filter(|output| output.kept() && !self.options.print) {
+            // Without a word on it numbers are kept as they are.
+            let numbers = numbers.or(output.grid.ints.then_some(Numbers::Ints));
             let saved = save(&output.grid, &output.file, numbers);
             saved.map_err(|error| {
                 Failure::Usage(format!("{}: error: cannot be written: {error}", output.file.display()))

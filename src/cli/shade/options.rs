@@ -2,6 +2,7 @@
 //! word may begin with one dash or two.
 
 use crate::cli::failure::Failure;
+use crate::ops::working_space::WorkingSpace;
 use std::path::PathBuf;
 
 /// One of the words that build the group, in the order in which they were given.
@@ -67,6 +68,10 @@ pub struct Options {
     pub raytype: String,
     /// Threads; 0 for one a core.
     pub threads: usize,
+    /// Report what is assigned and is not finite.
+    pub watch: bool,
+    /// What RGB means.
+    pub colorspace: WorkingSpace,
     /// Compile without optimising.
     pub unoptimized: bool,
     /// Count parameters that userdata may fill as connected.
@@ -103,6 +108,14 @@ pub struct Options {
     pub help: bool,
 }
 
+impl Options {
+    /// Is a setting of OSL's on, as the last word on it says?
+    pub fn is_set(&self, name: &str, otherwise: bool) -> bool {
+        let last = self.settings.iter().rev().find(|(known, _)| known == name);
+        last.map_or(otherwise, |(_, value)| value != "0")
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Options {
@@ -120,6 +133,8 @@ impl Default for Options {
             iters: 1,
             raytype: "camera".to_owned(),
             threads: 0,
+            watch: false,
+            colorspace: WorkingSpace::default(),
             unoptimized: false,
             userdata_isconnected: false,
             time: None,
@@ -172,6 +187,8 @@ const KNOWN: &[Known] = &[
     (&["archivegroup"], &["FILE"], "Write the group as text"),
     (&["path"], &["DIRS"], "Folders to look for shaders in, with colons between"),
     (&["t"], &["N"], "Threads; 0 for one a core"),
+    (&["colorspace"], &["NAME"], "What RGB means to the shaders: Rec709, ACEScg and others [default: Rec709]"),
+    (&["debugnan"], &[], "Report what shaders assign and is no finite number"),
     (&["O0"], &[], "Compile without optimising"),
     (&["options"], &["LIST"], "Settings of OSL's shading system; those with a meaning here: searchpath:shader"),
     (&["time"], &["S"], "End with an error when this takes more than S seconds"),
@@ -180,14 +197,10 @@ const KNOWN: &[Known] = &[
     (&["stats", "runstats"], &[], "Print instructions before and after optimising, and time a point"),
     (&["v"], &[], "Print the group and what is done"),
     (&["h", "help"], &[], "Print this"),
-    (
-        &["O1", "O2", "debug", "debug2", "llvm_debug", "batched", "profile", "warmup", "debugnan", "debuguninit"],
-        &[],
-        "",
-    ),
+    (&["O1", "O2", "debug", "debug2", "llvm_debug", "batched", "profile", "warmup", "debuguninit"], &[], ""),
     (&["groupoutputs", "print-groupdata", "print-group-stats", "inbuffer", "no-output-placement", "optix"], &[], ""),
     (&["shadeimage", "noshadeimage", "raytype_opt", "use_rs_bitcode", "saveptx"], &[], ""),
-    (&["texoptions", "colorspace", "llvm_opt", "entryoutput", "locale", "jbufferMB"], &["VALUE"], ""),
+    (&["texoptions", "llvm_opt", "entryoutput", "locale", "jbufferMB"], &["VALUE"], ""),
 ];
 
 /// The text of `--help`.
@@ -300,6 +313,13 @@ fn apply(name: &str, modifiers: &str, given: &[String], options: &mut Options) -
         "archivegroup" => options.archive = Some(PathBuf::from(&given[0])),
         "path" => options.path.extend(given[0].split(':').map(PathBuf::from)),
         "t" => options.threads = number(&given[0])?,
+        "colorspace" => {
+            options.colorspace = WorkingSpace::from_name(&given[0]).ok_or_else(|| {
+                let names = WorkingSpace::NAMES.join(", ");
+                Failure::Usage(format!("error: there is no color space {}\n  help: one of {names}", given[0]))
+            })?;
+        }
+        "debugnan" => options.watch = true,
         "O0" => options.unoptimized = true,
         "options" => settings(&given[0], options),
         "time" => options.time = Some(number(&given[0])?),

@@ -4,7 +4,8 @@ use super::group;
 use super::group::group;
 use super::host::PatchHost;
 use super::job::Job;
-use super::options::{Options, help, parse};
+use super::options::{Options, Step, help, parse};
+use super::wording;
 use crate::cli::compile::CompileArgs;
 use crate::cli::failure::Failure;
 use crate::cli::speak::{say, tell};
@@ -12,7 +13,7 @@ use crate::cli::watch::TimeBound;
 use crate::exec::{Group, Host};
 use crate::files::Destination;
 use crate::ir::lower::Lazy;
-use crate::scene::{GroupCompiler, GroupSpec, ShaderFiles};
+use crate::scene::{GroupCompiler, GroupSpec, SceneError, SceneProblem, ShaderFiles};
 use std::io::Write;
 use std::sync::Arc;
 use std::time::Instant;
@@ -76,9 +77,22 @@ fn list_layers(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Resu
 
 /// Compiles the layers as the options say.
 pub fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Result<Group, Failure> {
-    let wrong = |error: crate::scene::SceneError| Failure::Wrong(error.to_string());
+    let text = options.steps.iter().any(|step| matches!(step, Step::Group(_)));
+    let wrong = |error: SceneError| Failure::Wrong(wording::group_error(&error, spec, text));
+    let (mut missing, mut help) = (Vec::new(), None);
+    for layer in &spec.layers {
+        if let Err(error) = files.shader_of(spec, layer)
+            && matches!(*error.problem, SceneProblem::ShaderNotFound { .. })
+        {
+            missing.push(layer.shader.as_str());
+            help = help.or(error.help);
+        }
+    }
+    if let Some(help) = help {
+        return Err(Failure::Wrong(wording::missing(&missing, &help, spec)));
+    }
     let mut builder = files.builder(spec).map_err(wrong)?.group_name(&spec.name);
-    builder = builder.lazy(lazy(options));
+    builder = builder.lazy(lazy(options)).working_space(options.colorspace).watched(options.watch);
     if !options.outputs.is_empty() {
         builder = builder.keep_outputs();
     }
@@ -90,6 +104,9 @@ pub fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -
     }
     let group = files.finish(builder, spec).map_err(wrong)?;
     files.take_warnings().iter().for_each(|warning| tell(&format!("{warning}\n")));
+    if options.is_set("opt_warnings", false) {
+        group.error_calls().iter().for_each(|place| say(&wording::error_call(place, &spec.name)));
+    }
     if let Some(path) = &options.archive {
         let written = Destination::at(path).and_then(|file| file.write(|sink| sink.write_all(spec.text().as_bytes())));
         written.map_err(|error| Failure::Usage(format!("{}: error: {error}", path.display())))?;
@@ -99,15 +116,13 @@ pub fn compile_group(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -
 
 /// Which layers wait, by OSL's settings.
 fn lazy(options: &Options) -> Lazy {
-    let on = |name: &str| {
-        let last = options.settings.iter().rev().find(|(known, _)| known == name);
-        last.is_none_or(|(_, value)| value != "0")
-    };
+    let on = |name: &str| options.is_set(name, true);
     Lazy {
         layers: on("lazylayers"),
         globals: on("lazyglobals"),
         unconnected: on("lazyunconnected"),
         traces: on("lazytrace"),
+        errors: on("lazyerror"),
     }
 }
 

@@ -17,6 +17,8 @@ pub enum Numbers {
     Halves,
     /// Four bytes, IEEE single.
     Floats,
+    /// Four bytes, whole numbers; only TIFFs have them.
+    Ints,
 }
 
 impl Numbers {
@@ -38,6 +40,8 @@ pub struct Grid {
     pub size: [u32; 2],
     /// Numbers a value has.
     pub channels: usize,
+    /// True where they are whole, which bytes then keep as they are.
+    pub ints: bool,
     /// All of them.
     pub values: Vec<f32>,
 }
@@ -95,7 +99,13 @@ fn byte(x: f32) -> u8 {
 fn save_tiff(grid: &Grid, writer: &mut Sink, numbers: Option<Numbers>) -> Result<(), String> {
     let [width, height] = grid.size;
     let mut encoder = TiffEncoder::new(writer).map_err(|error| error.to_string())?;
-    let bytes = || grid.values.iter().map(|&x| byte(x)).collect::<Vec<u8>>();
+    let kept = |x: f32| if grid.ints { x.clamp(0.0, 255.0) as u8 } else { byte(x) };
+    let bytes = || grid.values.iter().map(|&x| kept(x)).collect::<Vec<u8>>();
+    if (grid.channels, numbers) == (1, Some(Numbers::Ints)) {
+        let ints: Vec<i32> = grid.values.iter().map(|&x| x as i32).collect();
+        let written = encoder.write_image::<colortype::GrayI32>(width, height, &ints);
+        return written.map_err(|error| error.to_string());
+    }
     match (grid.channels, numbers == Some(Numbers::Bytes)) {
         (1, true) => encoder.write_image::<colortype::Gray8>(width, height, &bytes()),
         (3, true) => encoder.write_image::<colortype::RGB8>(width, height, &bytes()),

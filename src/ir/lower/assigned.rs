@@ -20,6 +20,8 @@ pub(super) struct Effects {
     pub(super) returns: bool,
     /// True when it traces rays.
     pub(super) traces: bool,
+    /// True when it can call `error()`.
+    pub(super) errors: bool,
     /// True when it is worth skipping in lanes that do not need it.
     pub(super) costly: bool,
 }
@@ -151,6 +153,7 @@ impl Assigned {
                 out.vars.extend(callee.vars.difference(&callee.declared));
                 out.prints |= callee.prints;
                 out.traces |= callee.traces;
+                out.errors |= callee.errors;
                 out.exits |= callee.exits;
             }
             Builtin(name, args) => {
@@ -164,6 +167,7 @@ impl Assigned {
                 }
                 out.exits |= *name == "exit";
                 out.traces |= *name == "trace";
+                out.errors |= *name == "error";
                 out.costly |= name.contains("noise") || matches!(*name, "pow" | "spline" | "format" | "transform");
                 self.args(shader, args, out);
             }

@@ -74,7 +74,7 @@ impl Lower<'_> {
             }
             "normalize" => self.normalize(a[0]),
             "luminance" => {
-                let weights = crate::ops::color::LUMINANCE_WEIGHTS.map(|w| self.b.float(w));
+                let weights = self.shared.options.working_space.luminance_weights().map(|w| self.b.float(w));
                 vec![self.dot(a[0], &weights)]
             }
             "transform" => self.transform_call(a, args),

@@ -2,6 +2,7 @@
 
 use super::state::Lower;
 use super::value::Value;
+use super::watch::{binary, operation};
 use crate::check::typed::*;
 use crate::ir::op::Input;
 use crate::ir::program::*;
@@ -51,10 +52,11 @@ impl Lower<'_> {
                 }
                 last
             }
-            ExprKind::Assign(place, value) => {
-                let (value, target) = self.with_place(value, place, expr.span);
+            ExprKind::Assign(place, source) => {
+                let (value, target) = self.with_place(source, place, expr.span);
                 let value = self.stable(&value);
                 self.write(&target, &value);
+                self.watch(place.var, &value, operation(source), expr.span);
                 value
             }
             ExprKind::Update(op, place, value) => self.update(*op, place, value, expr.span),
@@ -108,6 +110,7 @@ impl Lower<'_> {
         };
         let new = Value::Regs(new);
         self.write(&target, &new);
+        self.watch(place.var, &new, binary(op), span);
         self.stable(&new)
     }
 
@@ -198,7 +201,7 @@ impl Lower<'_> {
             ExprKind::MatrixElement(..) => {
                 let (row, column) = (self.next_index(indices), self.next_index(indices));
                 let regs = self.regs(&value);
-                let index = self.matrix_index(row, column);
+                let index = self.matrix_index(row, column, false);
                 Value::Regs(vec![self.known_or_picked(&regs, index)])
             }
             _ => {
@@ -209,7 +212,7 @@ impl Lower<'_> {
                     (_, ExprKind::Index(base, _)) if matrix(base) => self.matrix_row(&value, index),
                     _ => {
                         let regs = self.regs(&value);
-                        let index = self.clamped(index, regs.len() as u32);
+                        let index = self.clamped(index, regs.len() as u32, false);
                         Value::Regs(vec![self.known_or_picked(&regs, index)])
                     }
                 }
@@ -223,7 +226,7 @@ impl Lower<'_> {
         let array = self.allocate(&Type::FLOAT.array(crate::lang::types::Length::Fixed(4)), &[]);
         for column in 0..4 {
             let column = self.b.int(column);
-            let at = self.matrix_index(row, column);
+            let at = self.matrix_index(row, column, false);
             let element = self.known_or_picked(&regs, at);
             let item = self.element(&array, column);
             self.store(&item, &Value::Regs(vec![element]));

@@ -3,12 +3,13 @@
 //! As in OSL, the last layer runs, and an earlier one when a parameter that it feeds is first read, or never; and the globals that a
 //! shader assigns stay assigned for those that run after it.
 //!
-//! Decision (2026-11-29): a layer whose parameter is first read where lanes may have parted (in a branch, a loop, behind a `return`) runs
-//! before the layer that reads it, unless that is the only place that reads anything of it, because its code stands in the program once
-//! and its values are those of all lanes; instead of once a place that reads it, guarded, whose code grows with the places and, in chains
-//! of layers, with their powers. What is seen of it is the order of what layers print, and that they print.
+//! Decision (2026-11-29): a layer whose parameter is first read where lanes may have parted (in a branch or a loop) runs before the statement
+//! of the body that does so (before the layer that reads it, where that may `return`, or reads it in a function), unless that is the only
+//! place that reads anything of it, because its code stands in the program once and its values are those of all lanes; instead of once a
+//! place that reads it, guarded, whose code grows with the places and, in chains of layers, with their powers. What is seen of it is that
+//! a layer prints whose branch no lane takes.
 
-use super::assigned::Assigned;
+use super::assigned::{Assigned, Effects};
 use super::shared::Shared;
 use super::spec::{Binding, Layer, LowerOptions};
 use super::state::{Bound, Frame, Lower};
@@ -52,6 +53,7 @@ pub fn lower(layers: &[Layer], group_name: &str, options: LowerOptions) -> Progr
     let mut program = builder.finish();
     program.result = Some(result);
     program.outputs = shared.outputs;
+    program.working_space = options.working_space;
     program
 }
 
@@ -79,7 +81,8 @@ fn runs_in_turn(layers: &[Layer], number: usize, options: LowerOptions) -> bool 
     kept || !lazy.layers
         || (!lazy.globals && assigns_globals(shader))
         || (!lazy.unconnected && !feeds())
-        || (!lazy.traces && calls_trace(shader))
+        || (!lazy.traces && body_effects(shader).traces)
+        || (!lazy.errors && body_effects(shader).errors)
 }
 
 /// The layers that feed one, each as often as it does.
@@ -91,12 +94,11 @@ fn sources_of(layer: &Layer) -> impl Iterator<Item = usize> + '_ {
 }
 
 fn assigns_globals(shader: &Shader) -> bool {
-    let effects = Assigned::default().of_stmts(shader, &shader.body);
-    effects.vars.iter().any(|var| shader.variables[var.0 as usize].global.is_some())
+    body_effects(shader).vars.iter().any(|var| shader.variables[var.0 as usize].global.is_some())
 }
 
-fn calls_trace(shader: &Shader) -> bool {
-    Assigned::default().of_stmts(shader, &shader.body).traces
+fn body_effects(shader: &Shader) -> Effects {
+    Assigned::default().of_stmts(shader, &shader.body)
 }
 
 /// Appends a layer, and before it those that it needs and that cannot wait.
@@ -133,7 +135,10 @@ impl<'a> Lower<'a> {
         }
         if !parts {
             self.frames.push(Frame { scope: None, result: None });
-            self.stmts(&self.shader.body);
+            for stmt in &self.shader.body {
+                self.pull_before(stmt);
+                self.stmts(std::slice::from_ref(stmt));
+            }
         } else {
             let scope = self.b.scope();
             self.exit = Some(scope);
@@ -164,17 +169,28 @@ impl<'a> Lower<'a> {
         }
         self.connected.push(param.var);
         let whole = fed.iter().all(|(target, _)| *target == name);
-        let waits = match self.first_use(param.var) {
+        let first = self.first_use(param.var);
+        let alone = || fed.len() == 1 && self.read_once(param.var) && self.feeds_only_this(fed[0].1);
+        let together = first == Use::Parted && !parts && !self.in_function(param.var) && !alone();
+        let waits = match first {
             Use::Together => !parts,
-            Use::Parted => fed.len() == 1 && self.read_once(param.var) && self.feeds_only_this(fed[0].1),
+            Use::Parted => together || alone(),
             // Nobody reads it, so what feeds it need not run.
             Use::None => true,
         };
         if waits && !param.open && whole {
             self.waiting.push(param.var);
+            self.together.extend(together.then_some(param.var));
             return;
         }
         fed.into_iter().for_each(|(_, from)| self.run_before(from));
+    }
+
+    /// Gives the parameters their values that a statement reads where lanes have parted.
+    fn pull_before(&mut self, stmt: &Stmt) {
+        let read = |var: &VarId| use_of(stmt, *var) == Use::Parted;
+        let together: Vec<VarId> = self.together.iter().copied().filter(read).collect();
+        together.into_iter().for_each(|var| self.pull(var));
     }
 
     /// Runs a layer, if it has not run.
@@ -227,15 +243,17 @@ impl<'a> Lower<'a> {
 
     /// Where a parameter is first read: by a statement of the body, or in a function, of which it is not known where it is called.
     fn first_use(&self, var: VarId) -> Use {
-        let in_function = self.shader.functions.iter().any(|function| first_use(&function.body, var) != Use::None);
-        if in_function { Use::Parted } else { first_use(&self.shader.body, var) }
+        if self.in_function(var) { Use::Parted } else { first_use(&self.shader.body, var) }
+    }
+
+    fn in_function(&self, var: VarId) -> bool {
+        self.shader.functions.iter().any(|function| first_use(&function.body, var) != Use::None)
     }
 
     /// Is a parameter read in one place alone, which is in no loop, and not by those who follow? Then it may get its value there, though
     /// only some lanes are there.
     fn read_once(&self, var: VarId) -> bool {
-        let in_function = self.shader.functions.iter().any(|function| first_use(&function.body, var) != Use::None);
-        !in_function && !self.read.contains(&var) && mentions(&self.shader.body, var) == Some(1)
+        !self.in_function(var) && !self.read.contains(&var) && mentions(&self.shader.body, var) == Some(1)
     }
 
     /// Does all that a layer, and those before it, put out go to one parameter of this one, and do they leave globals alone?

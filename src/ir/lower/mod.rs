@@ -26,6 +26,7 @@ mod storage;
 mod text;
 mod texture;
 mod value;
+mod watch;
 mod writing;
 
 pub use layers::lower;

@@ -3,7 +3,7 @@
 use super::state::Lower;
 use super::value::Value;
 use crate::check::typed::{Argument, Expr, ExprKind};
-use crate::ir::op::{Binary, IntBinary, Noise, NoiseKind, PrintTo, Routine, TextArg, TextFormat, Unary};
+use crate::ir::op::{Binary, Compare, IntBinary, Noise, NoiseKind, PrintTo, Routine, TextArg, TextFormat, Unary};
 use crate::ir::program::{Kind, Node, Reg};
 use crate::lang::symbols::Symbol;
 use crate::lang::types::Base;
@@ -21,7 +21,7 @@ impl Lower<'_> {
             _ => return None,
         };
         let outputs = call.ty.base().map_or(1, Base::floats) as u8;
-        let noise = |dims: usize| Noise { kind, dims: dims as u8, outputs, periodic, gradient: false };
+        let noise = |dims: usize| Noise { kind, dims: dims as u8, outputs, periodic, gradient: false, filtered: false };
         let coordinates =
             args.iter().skip(named as usize).take_while(|arg| arg.ty().base() != Some(Base::String)).count();
         let values = self.arguments(args);
@@ -37,10 +37,10 @@ impl Lower<'_> {
         Some(Value::Regs(self.noise(noise, &src, None)))
     }
 
-    /// Direction, bandwidth, impulses and anisotropy of Gabor noise, by the options of a call or as OSL has them without.
-    fn gabor_options(&mut self, args: &[Argument], values: &[Vec<Reg>]) -> [Reg; 6] {
+    /// Direction, bandwidth, impulses, anisotropy and whether it is filtered, of Gabor noise, by the options of a call or as OSL has them without.
+    fn gabor_options(&mut self, args: &[Argument], values: &[Vec<Reg>]) -> [Reg; 7] {
         let (zero, one, sixteen) = (self.b.float(0.0), self.b.float(1.0), self.b.float(16.0));
-        let mut options = [one, zero, zero, one, sixteen, zero];
+        let mut options = [one, zero, zero, one, sixteen, zero, one];
         for (pair, regs) in args.chunks(2).zip(values.chunks(2)) {
             let (Some(Argument::In(token)), [_, value]) = (pair.first(), regs) else { continue };
             let ExprKind::String(name) = &token.kind else { continue };
@@ -50,6 +50,7 @@ impl Lower<'_> {
                 ("bandwidth", [x]) => options[3] = *x,
                 ("impulses", [x]) => options[4] = *x,
                 ("anisotropic", [x]) => options[5] = *x,
+                ("do_filter", [x]) => options[6] = *x,
                 _ => {}
             }
         }
@@ -60,11 +61,14 @@ impl Lower<'_> {
         if self.b.program.kind(reg) == Kind::Int { self.b.int_to_float(reg) } else { reg }
     }
 
-    fn noise(&mut self, mut noise: Noise, src: &[Reg], gabor: Option<[Reg; 6]>) -> Vec<Reg> {
+    fn noise(&mut self, mut noise: Noise, src: &[Reg], gabor: Option<[Reg; 7]>) -> Vec<Reg> {
         let dims = noise.dims as usize;
         let mut src = src.to_vec();
-        if let (NoiseKind::Gabor, Some(options)) = (noise.kind, gabor) {
+        if let (NoiseKind::Gabor, Some([options @ .., filter])) = (noise.kind, gabor) {
+            let pixel = self.noise_pixel(&src[..dims.min(3)], filter);
+            noise.filtered = !pixel.is_empty();
             src.extend(options);
+            src.extend(pixel);
         }
         if noise.periodic && matches!(noise.kind, NoiseKind::Cell | NoiseKind::Hash) {
             // What looks at whole cells repeats when its coordinates do.
@@ -72,6 +76,25 @@ impl Lower<'_> {
             noise.periodic = false;
         }
         self.b.call(Routine::Noise(noise), src, self.span)
+    }
+
+    /// How coordinates change along x, then along y, where the noise is filtered and more than a line of it is seen; as much as nothing where
+    /// the filter is found to be off when it runs.
+    fn noise_pixel(&mut self, coordinates: &[Reg], filter: Reg) -> Vec<Reg> {
+        let known = self.b.known_float(filter);
+        if coordinates.len() < 2 || known == Some(0.0) {
+            return Vec::new();
+        }
+        let zero = self.b.float(0.0);
+        let on = known.is_none().then(|| self.b.compare(Compare::Ne, filter, zero));
+        let mut pixel = Vec::new();
+        for along_y in [false, true] {
+            for &coordinate in coordinates {
+                let change = self.b.derivative(coordinate, along_y);
+                pixel.push(on.map_or(change, |on| self.b.select(on, change, zero)));
+            }
+        }
+        pixel
     }
 
     /// A coordinate brought into `0..period`; periods are whole numbers from 1 on.
@@ -86,7 +109,7 @@ impl Lower<'_> {
     }
 
     /// Noise whose kind is a string: known here, or compared with every name when it runs.
-    fn named_noise(&mut self, name: Reg, mut noise: Noise, src: &[Reg], gabor: [Reg; 6]) -> Vec<Reg> {
+    fn named_noise(&mut self, name: Reg, mut noise: Noise, src: &[Reg], gabor: [Reg; 7]) -> Vec<Reg> {
         if let Some(known) = self.b.known_int(name)
             && let Some(kind) =
                 NoiseKind::from_name(Symbol(known).text()).filter(|kind| !noise.periodic || kind.repeats())
@@ -106,7 +129,7 @@ impl Lower<'_> {
         &mut self,
         name: Reg,
         mut noise: Noise,
-        (src, gabor): (&[Reg], [Reg; 6]),
+        (src, gabor): (&[Reg], [Reg; 7]),
         result: &[Reg],
         kinds: &[NoiseKind],
     ) {

@@ -62,12 +62,12 @@ impl Lower<'_> {
                 }
                 Access::Component(_) => {
                     let index = self.next_index(indices);
-                    let index = self.clamped(index, 3);
+                    let index = self.clamped(index, 3, true);
                     target.component = Some(self.component(index));
                 }
                 Access::Matrix(..) => {
                     let (row, column) = (self.next_index(indices), self.next_index(indices));
-                    let index = self.matrix_index(row, column);
+                    let index = self.matrix_index(row, column, true);
                     target.component = Some(self.component(index));
                 }
             }
@@ -84,16 +84,16 @@ impl Lower<'_> {
     }
 
     /// An index kept inside `0..len`; one that is outside is reported when it is used.
-    pub(super) fn clamped(&mut self, index: Reg, len: u32) -> Reg {
+    pub(super) fn clamped(&mut self, index: Reg, len: u32, written: bool) -> Reg {
         match self.b.known_int(index) {
             Some(known) if (0..len as i32).contains(&known) => index,
-            _ => self.b.clamped(index, len, self.span),
+            _ => self.b.clamped(index, len, written, self.span),
         }
     }
 
     /// `4 row + column`
-    pub(super) fn matrix_index(&mut self, row: Reg, column: Reg) -> Reg {
-        let (row, column) = (self.clamped(row, 4), self.clamped(column, 4));
+    pub(super) fn matrix_index(&mut self, row: Reg, column: Reg, written: bool) -> Reg {
+        let (row, column) = (self.clamped(row, 4, written), self.clamped(column, 4, written));
         let four = self.b.int(4);
         let row = self.b.int_binary(IntBinary::Mul, row, four);
         self.b.int_binary(IntBinary::Add, row, column)

@@ -1,6 +1,7 @@
 //! What a group is made of: layers, what their parameters get, and how they are lowered.
 
 use crate::check::typed::Shader;
+use crate::ops::working_space::WorkingSpace;
 use std::sync::Arc;
 
 /// What a parameter of a layer gets instead of its default.
@@ -40,6 +41,10 @@ pub struct LowerOptions {
     pub lazy: Lazy,
     /// Count parameters that userdata may fill as connected.
     pub userdata_connects: bool,
+    /// Report what is assigned and is no finite number.
+    pub watch: bool,
+    /// What RGB means.
+    pub working_space: WorkingSpace,
 }
 
 /// Which layers wait until somebody reads what they put out; any other runs in its turn. OSL has options of these names, all on at
@@ -54,10 +59,12 @@ pub struct Lazy {
     pub unconnected: bool,
     /// Those that trace rays.
     pub traces: bool,
+    /// Those that call `error`.
+    pub errors: bool,
 }
 
 impl Default for Lazy {
     fn default() -> Self {
-        Lazy { layers: true, globals: true, unconnected: true, traces: true }
+        Lazy { layers: true, globals: true, unconnected: true, traces: true, errors: true }
     }
 }

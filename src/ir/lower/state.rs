@@ -64,6 +64,8 @@ pub(super) struct Lower<'a> {
     pub(super) shared: Shared<'a>,
     /// Parameters that get their value when they are first read.
     pub(super) waiting: Vec<VarId>,
+    /// Those of them that must have their value before lanes part.
+    pub(super) together: Vec<VarId>,
     pub(super) span: Span,
 }
 
@@ -86,6 +88,7 @@ impl<'a> Lower<'a> {
             layer,
             shared: Shared::default(),
             waiting: Vec::new(),
+            together: Vec::new(),
             span: Span::NONE,
         }
     }

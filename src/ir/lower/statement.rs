@@ -2,6 +2,7 @@
 
 use super::assigned::Effects;
 use super::state::Lower;
+use super::watch::operation;
 use crate::check::typed::*;
 use crate::ir::program::Node;
 use velour_grammar::Span;
@@ -26,7 +27,9 @@ impl Lower<'_> {
                 let value = match init {
                     Some(init) => {
                         let value = self.expr(init);
-                        self.owned(&value, &ty)
+                        let value = self.owned(&value, &ty);
+                        self.watch(*var, &value, operation(init), init.span);
+                        value
                     }
                     None => self.zero(&ty),
                 };

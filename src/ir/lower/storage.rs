@@ -82,7 +82,7 @@ impl Lower<'_> {
             Value::Array { id, start, dims } => {
                 // An access checks the element of the whole array that it reads, not which row that is in.
                 let part = dims.len() > 1 || start.is_some();
-                let index = if part { self.clamped(index, dims[0]) } else { index };
+                let index = if part { self.clamped(index, dims[0], false) } else { index };
                 let stride: u32 = dims[1..].iter().product();
                 let stride = self.b.int(stride as i32);
                 let mut at = self.b.int_binary(IntBinary::Mul, index, stride);

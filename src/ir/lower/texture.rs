@@ -151,7 +151,8 @@ impl Lower<'_> {
     fn texture_info(&mut self, args: &[Argument], call: &Expr) -> Value {
         let (read, out) = self.asked(args);
         self.at(call.span);
-        let zero = self.b.float(0.0);
+        // No place at all: any tile of a texture will do.
+        let zero = self.b.float(f32::NAN);
         let (file, name) = (read[0], read[read.len() - 1]);
         let (s, t) = if read.len() == 4 { (read[1], read[2]) } else { (zero, zero) };
         let Some(out) = out else { return Value::Regs(vec![self.b.int(0)]) };
