@@ -26,8 +26,8 @@ pub(super) struct Probes {
     pub step: [Row; 2],
     /// The half axis across, in texels of the finest level.
     pub short: Row,
-    /// Half as many pixels as the picture has room for along s and along t; those that cover nothing are as many as you like.
-    pub room: [Row; 2],
+    /// What a pixel covers of the picture along s and along t.
+    pub pixel: [Row; 2],
     /// Their weights.
     bells: [Row; 3],
 }
@@ -41,8 +41,8 @@ impl Probes {
         for i in 0..PLACES {
             let sound = |x: f32| if x.is_finite() { x } else { 0.0 };
             let slopes = [sound(slopes[0][i]), sound(slopes[1][i]), sound(slopes[2][i]), sound(slopes[3][i])];
-            let room = |dx: f32, dy: f32| 0.5 / dx.abs().max(dy.abs()).max(1e-8);
-            (out.room[0][i], out.room[1][i]) = (room(slopes[0], slopes[2]), room(slopes[1], slopes[3]));
+            out.pixel[0][i] = slopes[0].abs().max(slopes[2].abs());
+            out.pixel[1][i] = slopes[1].abs().max(slopes[3].abs());
             let Ellipse { major, lengths: [given, thin] } = Ellipse::of(slopes, size, how);
             let long = if given > MOST_ASPECT * thin { 0.5 * (given + MOST_ASPECT * thin) } else { given };
             let short = thin.max(long / MOST_ASPECT);

@@ -17,7 +17,7 @@
 use super::ellipse::{PLACES, Probes, Row};
 use super::join::{Corners, Joined, Plane, folded};
 use super::pyramid::Texture;
-use super::sample::{Lookup, Sample};
+use super::sample::{Interpolation, Lookup, Sample};
 use super::wrap::Wrap;
 use crate::lanes;
 
@@ -130,7 +130,7 @@ impl Texture {
     #[inline(always)]
     fn probe<const G: bool>(&self, [s, t]: [f32; 2], probes: &Probes, place: usize, how: &Lookup) -> Sample {
         let (count, step) = (probes.count[place], [probes.step[0][place], probes.step[1][place]]);
-        let planes = self.planes(probes.short[place], [probes.room[0][place], probes.room[1][place]], how);
+        let planes = self.planes(probes.short[place], [probes.pixel[0][place], probes.pixel[1][place]], how);
         if count == 1 {
             return planes.join::<G>(&planes.corners([s; PLACES], [t; PLACES]), 0).sample();
         }
@@ -158,26 +158,27 @@ impl Texture {
     }
 
     /// The two levels between whose texels a half axis lies, and the part of the coarser; that alone where the half axis is a texel of it.
-    /// `room` is as in [`Probes`].
+    /// `pixel` is as in [`Probes`].
     #[inline(always)]
-    fn planes<'a>(&'a self, half_axis: f32, room: [f32; 2], how: &'a Lookup) -> Planes<'a> {
+    fn planes<'a>(&'a self, half_axis: f32, pixel: [f32; 2], how: &'a Lookup) -> Planes<'a> {
         let (level, part) = self.level_of(half_axis);
         let wrap = [how.wrap[0].unwrap_or(self.wrap()[0]), how.wrap[1].unwrap_or(self.wrap()[1])];
-        let coarse = Plane::new(self.level(level), self.is_large(level, room), wrap, how);
+        let coarse = Plane::new(self.level(level), self.is_large(level, pixel, how), wrap, how);
         if level == 0 || part >= 1.0 {
             return Planes { wrap, coarse, fine: coarse, part: None };
         }
-        let fine = Plane::new(self.level(level - 1), self.is_large(level - 1, room), wrap, how);
+        let fine = Plane::new(self.level(level - 1), self.is_large(level - 1, pixel, how), wrap, how);
         Planes { wrap, coarse, fine, part: Some(part) }
     }
 
-    /// Is a level the finest, or one whose texels are wider than two pixels along s or t?
+    /// Is a level the finest, or one whose texels are wider than two pixels along s or t? The second is found only where a look-up asks.
     #[inline(always)]
-    fn is_large(&self, level: usize, room: [f32; 2]) -> bool {
+    fn is_large(&self, level: usize, pixel: [f32; 2], how: &Lookup) -> bool {
         let [width, height] = self.size();
         // Fewer texels than whole pairs of pixels.
-        let few = |texels: usize, room: f32| (texels >> level).max(1) as f32 + 1.0 <= room;
-        level == 0 || few(width, room[0]) || few(height, room[1])
+        let few = |texels: usize, pixel: f32| ((texels >> level).max(1) + 1) as f32 * (2.0 * pixel) <= 1.0;
+        let [s, t] = pixel;
+        level == 0 || how.interpolation == Interpolation::Smart && (few(width, s) || few(height, t))
     }
 
     /// The coarser of the two levels between whose texels a half axis lies, and its part: all of it where the half axis is a texel of it.
