@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One share of a picture's samples for each task of a Slurm array, merged by the array's last task to be done or by hand:
+# One share of a picture's samples for each task of a Slurm array, merged when all are done:
 #
 #   job=$(sbatch --parsable --array=1-8 farm/slurm.sh scene.xml picture.exr 512)
 #   sbatch --dependency=afterok:"$job" --wrap 'velour merge picture.part*.exr -o picture.exr --samples 0..512'
@@ -10,10 +10,11 @@
 #SBATCH --open-mode=append
 set -euo pipefail
 scene=$1 out=$2 samples=$3
-task=$SLURM_ARRAY_TASK_ID tasks=$SLURM_ARRAY_TASK_COUNT
+# A fourth argument tells into how many shares it was cut, when only some of them are run again (--array=3).
+task=$SLURM_ARRAY_TASK_ID tasks=${4:-$SLURM_ARRAY_TASK_COUNT}
 part=${out%.exr}.part$(printf %04d "$task").exr
 resume=()
 if [ -s "$part" ]; then resume=(--resume "$part"); fi
 # In place of this shell, so that the signals of the engine reach it.
 exec "${VELOUR:-velour}" render "$scene" -o "$part" --spp "$samples" --share "$task/$tasks" \
-    --threads "${SLURM_CPUS_PER_TASK:-0}" "${resume[@]}"
+    --threads "${SLURM_CPUS_PER_TASK:-0}" ${resume[@]+"${resume[@]}"}

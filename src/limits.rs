@@ -59,8 +59,17 @@ pub const CLOSURE_NODES: usize = 1 << 18;
 /// Numbers in the columns of the closure tree of a batch, 64 MB.
 pub const CLOSURE_NUMBERS: usize = 1 << 24;
 
-/// Lobes of a batch, and as many layers over them, and weights on their way. At 512 points all together take some 300 MB.
-pub const LOBES: usize = 1 << 12;
+/// Lobes of a batch times its points, and as many layers over them, and weights on their way: all together take some 300 MB.
+pub const LANE_LOBES: usize = 1 << 21;
+
+/// The most lobes of a batch of any number of points, and as many layers over them, and weights on their way.
+pub const MOST_LOBES: usize = 1 << 16;
+
+/// How many lobes a batch of so many points may have.
+pub const fn lobes(points: usize) -> usize {
+    let most = LANE_LOBES / if points == 0 { 1 } else { points };
+    if most < MOST_LOBES { most } else { MOST_LOBES }
+}
 
 /// Steps that a regular expression may go back in one text.
 pub const PATTERN_STEPS: usize = 100_000;

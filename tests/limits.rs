@@ -173,21 +173,25 @@ fn loops_of_costly_functions_end() {
 #[test]
 fn closures_are_bounded() {
     let place = Place::new();
-    place.refused("f5", "Ci = diffuse(N); for (int i = 0; i < 20; i++) Ci = layer(Ci, Ci);", "more than 4096 lobes");
+    place.refused(
+        "f5",
+        "Ci = diffuse(N); for (int i = 0; i < 20; i++) Ci = layer(Ci, Ci);",
+        "lobes, or layers over them",
+    );
     place.refused(
         "e9a",
         "Ci = diffuse(N); for (int i = 0; i < 8000; i++) Ci = sheen(Ci, normalize(N + .1 * vector(u, v, i * 1e-4)), color(1), .3);",
-        "more than 4096 lobes",
+        "lobes, or layers over them",
     );
     let sum = "closure color k = diffuse(N); for (int i = 0; i < 14; i++) k = layer(k, k + u * diffuse(N)); Ci = k;";
-    place.refused("e9b", sum, "more than 4096 lobes");
+    place.refused("e9b", sum, "lobes, or layers over them");
     place.refused(
         "e9c",
         "for (int i = 0; i < 100000; i++) Ci += u * i * diffuse(normalize(N + u));",
         "closures of a batch",
     );
     let layers = "for (int i = 0; i < 1600; i++) c = layer(sheen_bsdf(N, color(1), .3), c + .001 * diffuse(normalize(N + .1 * vector(u * i, v, u))));";
-    place.refused("e9d", &format!("closure color c = diffuse(N); {layers} Ci = c;"), "more than 4096 lobes");
+    place.refused("e9d", &format!("closure color c = diffuse(N); {layers} Ci = c;"), "lobes, or layers over them");
     let half = layers.replace("1600", "400");
     place.surface("e9e", &format!("closure color c = diffuse(N); {half} Ci = c;"));
     place.done("e9e", &place.render("e9e"));

@@ -74,6 +74,8 @@ fn parts_merge_into_the_file_of_one_render() {
     assert!(status == 1 && text.contains("samples 0..3 would count twice"), "{text}");
     let (status, text) = place.say("merge plain.exr a.exr -o none.exr");
     assert!(status == 2 && text.contains("plain.exr is no part of a picture"), "{text}");
+    let (status, text) = place.say("merge a.exr b.exr c.exr -o none.exr --samples 0..10");
+    assert!(status == 1 && text.contains("samples 10..12 are there and were not asked for"), "{text}");
     // A share is its part of all samples.
     place.done("render ball.xml -o share.exr --spp 12 --share 2/3");
     place.done("render ball.xml -o range.exr --samples 4..8");
@@ -82,6 +84,14 @@ fn parts_merge_into_the_file_of_one_render() {
     let (status, text) = place.say("merge a.exr seed.exr -o none.exr");
     assert!(status == 1 && text.contains("the seed is 5 and not 0"), "{text}");
     assert!(!place.path().join("none.exr").exists());
+    // A part may go through a pipe, but does not come from one.
+    let part = place.command("render ball.xml -o - --samples 3..10").stdout(Stdio::piped()).output().unwrap().stdout;
+    assert!(part == place.read("b.exr"));
+    assert!(Command::new("mkfifo").arg(place.path().join("pipe.exr")).status().unwrap().success());
+    let (status, text) = place.say("merge pipe.exr -o none.exr");
+    assert!(status == 2 && text.contains("no regular file"), "{text}");
+    let (status, text) = place.say("merge a.exr -o a.exr --picture");
+    assert!(status == 2 && text.contains("would lose its samples"), "{text}");
     // A part that lacks some goes on.
     place.done("render ball.xml --resume ac.exr -o ac.exr --spp 12");
     assert!(place.read("whole.exr") == place.read("ac.exr"));
@@ -100,6 +110,8 @@ fn ranges_that_cannot_be_are_refused() {
         ("render ball.xml -o a.exr --share 0/2", "no share"),
         ("render ball.xml -o a.exr --share 1/9 --spp 4", "too few"),
         ("render ball.xml --resume none.exr", "none.exr is no part"),
+        ("render ball.xml -o a.exr --checkpoint inf", "0.01"),
+        ("render ball.xml -o a.exr --checkpoint=-1", "0.01"),
     ] {
         let (status, text) = place.say(line);
         assert!(status == 2 && text.contains(word), "{line}: {status} {text}");
@@ -186,8 +198,38 @@ fn a_picture_that_is_no_exr_has_its_part_beside_it_until_it_is_done() {
     let (status, text) = child.end();
     assert!(status == 130 && text.contains("--resume cut.png.part.exr"), "{text}");
     assert!(place.read("cut.png").starts_with(b"\x89PNG"));
-    place.done("render ball.xml --resume cut.png.part.exr -o cut.png --spp 5");
+    place.done("render ball.xml --resume cut.png.part.exr -o cut.png --spp 5 --checkpoint 0");
     assert!(!place.path().join("cut.png.part.exr").exists());
+}
+
+#[test]
+fn parts_on_the_way_do_not_show_and_let_the_work_go_on() {
+    let place = Place::new();
+    // Each look at the clock finds that a part is due.
+    let start = Instant::now();
+    place.done("render ball.xml -o cut.exr --samples 0..64 --checkpoint 0.01");
+    assert!(start.elapsed() < Duration::from_secs(60));
+    place.done("render ball.xml -o whole.exr --samples 0..64 --checkpoint 0");
+    assert!(place.read("cut.exr") == place.read("whole.exr"));
+    // Nor where a render that stops by noise has been cut.
+    for (name, every) in [("one", "0"), ("two", "0.02")] {
+        place.done(&format!("render ball.xml -o {name}.exr --noise 0.004 --checkpoint {every}"));
+    }
+    assert!(place.read("one.exr") == place.read("two.exr"));
+    // A part that another render has left stays.
+    std::fs::write(place.path().join("x.png.part.exr"), "of another").unwrap();
+    place.done("render ball.xml -o x.png --spp 1");
+    assert_eq!(place.read("x.png.part.exr"), b"of another");
+}
+
+#[test]
+fn names_of_any_language_do_not_lose_a_picture() {
+    let place = Place::new();
+    std::fs::write(place.path().join("сцена.xml"), BALL).unwrap();
+    place.done("render сцена.xml -o plain.exr --spp 1");
+    place.done("render сцена.xml -o part.exr --samples 0..1");
+    place.done("merge part.exr -o merged.exr --picture");
+    assert!(place.read("plain.exr") == place.read("merged.exr"));
 }
 
 #[test]

@@ -86,7 +86,7 @@ impl Checkout {
     /// Runs `velour` with the words of a line and gives its status and standard output, or its messages on failure.
     fn velour(&self, line: &str) -> (i32, String) {
         let mut arguments: Vec<&str> = line.split_whitespace().collect();
-        if arguments[0] == "render" {
+        if arguments[0] == "render" && !arguments.contains(&"--spp") {
             arguments.extend(["--spp", "1"]);
         }
         let command = Command::new(env!("CARGO_BIN_EXE_velour")).args(arguments).current_dir(self.0.path()).output();

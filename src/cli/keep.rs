@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// The signals that ask a render to end, and what it ends with then.
@@ -24,8 +24,8 @@ impl Signals {
     pub fn listen(stop: &Arc<AtomicBool>) -> Result<Self, Failure> {
         let asked = [Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false))];
         for ((signal, status), flag) in SIGNALS.into_iter().zip(&asked) {
-            // In this order: the one that looks at the flag comes before the one that sets it.
-            let second = signal_hook::flag::register_conditional_shutdown(signal, i32::from(status), flag.clone());
+            // In this order: the one that looks at `stop` comes before the one that sets it.
+            let second = signal_hook::flag::register_conditional_shutdown(signal, i32::from(status), stop.clone());
             let first = second.and_then(|_| signal_hook::flag::register(signal, flag.clone()));
             let all = first.and_then(|_| signal_hook::flag::register(signal, stop.clone()));
             all.map_err(|error| Failure::Usage(format!("error: signals cannot be listened to: {error}")))?;
@@ -40,27 +40,39 @@ impl Signals {
     }
 }
 
+/// Samples of each pixel from one round to the next: as many as fill a wave. A render that is stopped has whole rounds of all pixels, and
+/// of some pixels one more.
+const SAMPLES_A_ROUND: u32 = 32;
+
+/// Steps of the bar.
+const STEPS: f64 = 1000.0;
+
 /// A bar on a terminal, nothing elsewhere; stops a round when a part is to be written.
 struct Watch {
     bar: ProgressBar,
     due: Option<Instant>,
-    /// Tiles that the rounds before this one have done.
-    before: AtomicUsize,
-    total: AtomicUsize,
+    /// What part of the whole was done before this round, and what this round adds.
+    share: [f64; 2],
 }
 
 impl Progress for Watch {
     fn tiles(&self, done: usize, total: usize) {
-        // A round that goes on where another was stopped has fewer tiles than all.
-        let all = self.total.fetch_max(total, Ordering::Relaxed).max(total);
-        self.before.fetch_max(all - total + done, Ordering::Relaxed);
-        self.bar.set_length(all as u64);
-        self.bar.set_position(self.before.load(Ordering::Relaxed) as u64);
+        let [before, round] = self.share;
+        self.bar.set_position((STEPS * (before + round * done as f64 / total.max(1) as f64)) as u64);
     }
 
     fn cancelled(&self) -> bool {
         self.due.is_some_and(|due| Instant::now() >= due)
     }
+}
+
+/// What has become of a render.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome {
+    /// All was done.
+    pub done: bool,
+    /// A part was written on the way.
+    pub kept: bool,
 }
 
 /// Where parts go, and how often.
@@ -71,6 +83,8 @@ pub struct Keeping<'a> {
     pub every: Option<f64>,
     /// The file itself is a part when it is done.
     pub parts: bool,
+    /// The part that the render goes on from.
+    pub resumed: Option<&'a Path>,
 }
 
 impl Keeping<'_> {
@@ -88,43 +102,57 @@ impl Keeping<'_> {
         Some(PathBuf::from(name))
     }
 
-    /// Renders to the end, or until it is asked to stop; writes parts on the way. True says that all was done.
-    pub fn render(&self, renderer: &mut Renderer, signals: &Signals) -> Result<bool, Failure> {
-        let bar = ProgressBar::new(0);
+    /// Renders to the end, or until it is asked to stop; writes parts on the way.
+    pub fn render(&self, renderer: &mut Renderer, signals: &Signals) -> Result<Outcome, Failure> {
+        // indicatif draws nothing when standard error is no terminal.
+        let bar = ProgressBar::new(STEPS as u64);
         if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left") {
             bar.set_style(style);
         }
-        let every = self.every.filter(|_| self.part_file().is_some()).map(Duration::from_secs_f64);
+        // Above this the clock has no number.
+        let every = self.every.filter(|_| self.part_file().is_some()).map(|s| Duration::from_secs_f64(s.min(1e9)));
         let due = || every.map(|every| Instant::now() + every);
-        let (before, total) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let mut watch = Watch { bar, due: due(), before, total };
+        let mut watch = Watch { bar, due: due(), share: [0.0, 1.0] };
+        let mut kept = false;
+        // Rounds of a render that stops by itself are its own.
+        let settings = renderer.settings();
+        let (adapts, wanted) = (settings.adapts(), f64::from(settings.samples - settings.first_sample));
+        let most = if adapts { u32::MAX } else { SAMPLES_A_ROUND };
         let done = loop {
-            let left = renderer.round(&watch).map_err(Failure::of_render)?;
+            if !adapts {
+                let before = f64::from(renderer.taken()[0]) / wanted;
+                watch.share = [before.min(1.0), f64::from(most) / wanted];
+            }
+            let left = renderer.round_of(most, &watch).map_err(Failure::of_render)?;
             if !left || signals.asked().is_some() {
                 break !left;
             }
             if watch.due.is_some_and(|due| Instant::now() >= due) {
-                self.checkpoint(&renderer.part());
+                kept |= self.checkpoint(&renderer.part());
                 watch.due = due();
             }
         };
         watch.bar.finish_and_clear();
-        Ok(done)
+        Ok(Outcome { done, kept })
     }
 
-    /// Writes a part while the render goes on, which a disk that is full for a while does not end.
-    fn checkpoint(&self, part: &Part) {
-        let Some(path) = self.part_file() else { return };
-        if let Err(message) = part::write(part, &path) {
+    /// Writes a part while the render goes on, which a disk that is full for a while does not end; true when it is there.
+    fn checkpoint(&self, part: &Part) -> bool {
+        let Some(path) = self.part_file() else { return false };
+        let written = part::write(part, &path);
+        if let Err(message) = &written {
             tell(&format!("warning: this part of the picture was not kept: {message}\n"));
         }
+        written.is_ok()
     }
 
     /// Writes what a finished or a stopped render leaves.
-    pub fn write(&self, renderer: &Renderer, done: bool) -> Result<(), Failure> {
+    pub fn write(&self, renderer: &Renderer, outcome: Outcome) -> Result<(), Failure> {
+        let done = outcome.done;
         let part_file = self.part_file();
         let beside = part_file.as_ref().filter(|file| *file != self.output);
-        let is_part = part_file.is_some() && beside.is_none() && (self.parts || !done);
+        let exr = output::check(self.output).is_ok_and(|format| format == output::Format::Exr);
+        let is_part = exr && beside.is_none() && (self.parts || !done);
         let written = if is_part {
             part::write(&renderer.part(), self.output)
         } else {
@@ -134,11 +162,12 @@ impl Keeping<'_> {
             return Err(Failure::Usage(format!("error: {message}{}", self.rescue(renderer))));
         }
         match beside {
-            // A part that was written on the way has done its work; there may be none.
-            Some(file) if done => drop(std::fs::remove_file(file)),
+            // A part that was written on the way, or gone on from, has done its work; one that another render has left is that one's.
+            Some(file) if done && (outcome.kept || self.resumed == Some(file)) => drop(std::fs::remove_file(file)),
+            Some(_) if done => {}
             Some(file) => {
                 let kept = part::write(&renderer.part(), file);
-                kept.map_err(|message| Failure::Usage(format!("error: {message}")))?;
+                kept.map_err(|message| Failure::Usage(format!("error: {message}{}", self.rescue(renderer))))?;
             }
             None => {}
         }
@@ -164,12 +193,18 @@ impl Keeping<'_> {
     /// Where the picture goes when its file cannot be written: into the folder for temporary files.
     fn rescue(&self, renderer: &Renderer) -> String {
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
-        let path = std::env::temp_dir().join(format!("velour-{}-{name}.part.exr", std::process::id()));
+        // A folder is made or not: nobody can have put a link in its place.
+        let nanoseconds = std::time::UNIX_EPOCH.elapsed().map_or(0, |since| since.as_nanos());
+        let folder = std::env::temp_dir().join(format!("velour-{}-{nanoseconds}", std::process::id()));
+        if let Err(error) = std::fs::create_dir(&folder) {
+            return format!("\n  nor were its samples kept elsewhere: {}: {error}", folder.display());
+        }
+        let path = folder.join(format!("{name}.part.exr"));
         match part::write(&renderer.part(), &path) {
             Ok(()) => {
                 format!("\n  help: its samples are in {}; `velour merge` makes a picture of them", path.display())
             }
-            Err(_) => String::new(),
+            Err(message) => format!("\n  nor were its samples kept elsewhere: {message}"),
         }
     }
 }

@@ -26,6 +26,14 @@ pub struct MergeArgs {
 /// Merges parts and writes the picture.
 pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let format = output::check(&args.output).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    let same = |path: &PathBuf| path.canonicalize().is_ok_and(|a| args.output.canonicalize().is_ok_and(|b| a == b));
+    if let Some(part) = args.parts.iter().find(|path| args.picture && same(path)) {
+        let text = format!(
+            "error: a picture in place of {} would lose its samples\n  help: name another file",
+            part.display()
+        );
+        return Err(Failure::Usage(text));
+    }
     let mut merged: Option<Part> = None;
     for path in &args.parts {
         let part = part::read(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
@@ -53,14 +61,16 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
 /// Says which samples are missing: those that were asked for, which is a failure, or those between the others.
 fn complete(args: &MergeArgs, part: &Part) -> Result<(), Failure> {
     let common = part.common();
-    let gaps = |wanted: &Ranges| {
-        let mut gaps = Ranges::default();
-        wanted.iter().for_each(|range| common.missing(range.clone()).iter().for_each(|gap| gaps.insert(gap.clone())));
-        gaps
-    };
+    if let Some(wanted) = &args.samples {
+        let beyond = part.held.iter().map(|held| wanted.lacking(held)).find(|extra| !extra.is_empty());
+        if let Some(extra) = beyond {
+            let help = "help: leave out the part that holds them, or ask for them as well";
+            return Err(Failure::Wrong(format!("error: samples {extra} are there and were not asked for\n  {help}")));
+        }
+    }
     let missing = match &args.samples {
-        Some(wanted) => gaps(wanted),
-        None => gaps(&Ranges::of(0..part.held.iter().map(Ranges::end).max().unwrap_or(0))),
+        Some(wanted) => common.lacking(wanted),
+        None => common.missing(0..part.held.iter().map(Ranges::end).max().unwrap_or(0)),
     };
     if missing.is_empty() {
         return Ok(());

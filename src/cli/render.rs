@@ -61,7 +61,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "PART", conflicts_with_all = ["noise", "time"])]
     resume: Option<PathBuf>,
     /// Keep what there is every S seconds, for --resume; 0 keeps nothing before the end or a signal
-    #[arg(long, value_name = "S", default_value_t = 60.0)]
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = checkpoint)]
     checkpoint: f64,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
@@ -198,7 +198,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         (settings.first_sample, settings.samples) = (range.start, range.end);
     }
     if let Some(share) = args.share {
-        let few = || Failure::Usage(format!("error: {} samples are too few for so many shares", settings.samples));
+        let few = || {
+            Failure::Usage(format!(
+                "error: {} samples are too few for so many shares\n  help: take fewer shares, or more samples with --spp",
+                settings.samples
+            ))
+        };
         let range = share.range(settings.samples).ok_or_else(few)?;
         (settings.first_sample, settings.samples) = (range.start, range.end);
     }
@@ -222,18 +227,21 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         return debug_pixel(&renderer, pixel);
     }
     if let Some(file) = &args.resume {
+        if !args.compile.access()?.covers(file) {
+            return Err(Failure::Usage(format!("error: {} is not in the sandbox", file.display())));
+        }
         let wrong = |error| Failure::Wrong(format!("error: {error}"));
         let part = part::read(file).map_err(|error| Failure::Usage(format!("error: {error}")))?;
         renderer.resume(part).map_err(wrong)?;
     }
     let every = Some(args.checkpoint).filter(|seconds| *seconds > 0.0);
-    let keeping = Keeping { output: path, every, parts: args.leaves_part() };
+    let keeping = Keeping { output: path, every, parts: args.leaves_part(), resumed: args.resume.as_deref() };
     let signals = Signals::listen(renderer.stop())?;
-    let done = keeping.render(&mut renderer, &signals)?;
+    let outcome = keeping.render(&mut renderer, &signals)?;
     let about = renderer.picture().about;
     pass_on(&about.reports);
-    keeping.write(&renderer, done)?;
-    if let Some(status) = signals.asked().filter(|_| !done) {
+    keeping.write(&renderer, outcome)?;
+    if let Some(status) = signals.asked().filter(|_| !outcome.done) {
         return Err(Failure::Stopped(status));
     }
     tell(&last_line(&about, renderer.settings(), path, start.elapsed().as_secs_f64()));
@@ -299,6 +307,13 @@ fn settings(args: &RenderArgs) -> Settings {
         },
         ..defaults
     }
+}
+
+/// Seconds between parts: 0, or enough for something to be done in between.
+fn checkpoint(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    let known = value == 0.0 || (value >= 0.01 && value.is_finite());
+    if known { Ok(value) } else { Err("seconds are 0 or at least 0.01".to_owned()) }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

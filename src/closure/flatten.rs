@@ -15,7 +15,7 @@ use super::store::NONE;
 use super::tops::Tops;
 use super::tree::{Ints, Node, NodeId, Tree};
 use super::weights::{Operand, Weight, Weights, multiply, normalise_lanes, share_lanes, usable, usable_and_some};
-use crate::limits::LOBES;
+use crate::limits;
 use glam::Vec3;
 use std::collections::HashMap;
 
@@ -94,7 +94,7 @@ impl Sweep {
                 return true;
             }
         }
-        if self.entries.len() >= LOBES {
+        if self.entries.len() >= limits::lobes(lanes) {
             return false;
         }
         self.entries.push(Entry { next: self.heads[node as usize], node, layer, weight });
@@ -235,7 +235,7 @@ impl Pass<'_> {
                 }
             };
             let layers = &mut self.flat.layers;
-            if layers.list.len() >= LOBES {
+            if layers.list.len() >= limits::lobes(n) {
                 return false;
             }
             let depth = layers.depth(layer) + 1;
@@ -262,7 +262,7 @@ impl Pass<'_> {
         let (n, tree) = (self.tree.lanes, self.tree);
         let (tint, model) = (part.tint.or(leaf.tint), part.model);
         let flat = &mut *self.flat;
-        if flat.lobes.len() >= LOBES {
+        if flat.lobes.len() >= limits::lobes(n) {
             return false;
         }
         let made = flat.models.list[model as usize];

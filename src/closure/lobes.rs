@@ -78,7 +78,7 @@ impl Lobes {
         &self.flat.dropped
     }
 
-    /// The node at which there were more lobes or layers than [`crate::limits::LOBES`]; the others are not there.
+    /// The node at which there were more lobes or layers than [`crate::limits::lobes`]; the others are not there.
     pub fn crowded(&self) -> Option<NodeId> {
         self.flat.crowded
     }

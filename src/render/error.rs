@@ -114,9 +114,7 @@ impl fmt::Display for SettingsError {
             SettingsError::Size { width, height } => {
                 write!(f, "an image of {width} x {height} pixels cannot be rendered")
             }
-            SettingsError::NoSamples => {
-                f.write_str("at least one sample a pixel is needed, and the last one must come after the first")
-            }
+            SettingsError::NoSamples => f.write_str("at least one sample a pixel is needed"),
             SettingsError::Noise => f.write_str("the noise to stop at must be a number above 0, such as 0.01"),
             SettingsError::Seconds => f.write_str("the time to stop at must be a number of seconds above 0"),
             SettingsError::Batches => f.write_str("tile size, wave size and batch width must be above 0"),

@@ -60,11 +60,14 @@ impl Sums {
     #[inline]
     pub fn splat(&mut self, first: usize, row: usize, columns: [f64; 2], rows: [f64; 2], light: [f32; 3], alpha: f32) {
         // What amplifies without end would make a sum of alpha overflow.
-        let alpha = f64::from(alpha.clamp(-2048.0, 2048.0));
+        let alpha = f64::from(alpha.max(-2048.0).min(2048.0));
         let place = Place { first, row, columns, rows };
         let most = light[0].abs().max(light[1].abs()).max(light[2].abs());
         let [r, g, b] = light.map(f64::from);
-        if most == 0.0 || (most >= power(TOP - STEP) as f32 && most < power(TOP) as f32) {
+        // What is no number is no light; paths leave it out themselves.
+        if !(light[0] + light[1] + light[2]).is_finite() {
+            self.splat_elsewhere(&place, [r, g, b], alpha, most);
+        } else if most == 0.0 || (most >= power(TOP - STEP) as f32 && most < power(TOP) as f32) {
             add(&mut self.tiers[0].sums, &place, [r, g, b, alpha, 1.0].map(|x| x * power(FRACTION)));
         } else {
             self.splat_elsewhere(&place, [r, g, b], alpha, most);
@@ -80,6 +83,9 @@ impl Sums {
     #[cold]
     fn splat_elsewhere(&mut self, place: &Place, [r, g, b]: [f64; 3], alpha: f64, most: f32) {
         add(&mut self.tiers[0].sums, place, [0.0, 0.0, 0.0, alpha, 1.0].map(|x| x * power(FRACTION)));
+        if !(r + g + b).is_finite() || most == 0.0 {
+            return;
+        }
         let number = (exponent(most) - (TOP - STEP)).div_euclid(STEP).clamp(TIERS.start, TIERS.end - 1);
         let scale = power(FRACTION - STEP * number);
         add(&mut self.tier(number).sums, place, [r, g, b, 0.0, 0.0].map(|x| x * scale));
@@ -152,10 +158,12 @@ impl Sums {
         let [first, rest @ ..] = &tiers[..] else { return None };
         let numbers = tiers.iter().map(|tier| tier.number);
         let even = rest.iter().all(|tier| tier.sums.len() == first.sums.len());
-        let known = numbers.clone().all(|number| (TIERS.start..=TIERS.end + 1).contains(&number));
+        let known = numbers.clone().all(is_tier);
         let apart =
             numbers.clone().enumerate().all(|(i, number)| numbers.clone().skip(i + 1).all(|other| other != number));
-        let room = tiers.iter().flat_map(|tier| tier.sums.iter().flatten()).all(|sum| sum.unsigned_abs() < 1 << 61);
+        // What is settled is half a step at the most; above the last tier that samples go to there are but carries.
+        let most = |tier: &Tier| if tier.number > TIERS.end { 1u64 << 40 } else { 1 << (STEP - 1) };
+        let room = tiers.iter().all(|tier| tier.sums.iter().flatten().all(|sum| sum.unsigned_abs() <= most(tier)));
         let at = tiers.iter().position(|tier| tier.number == 0)?;
         let mut sums = Sums { tiers };
         sums.tiers.swap(0, at);
@@ -175,6 +183,11 @@ impl Sums {
         let value = digits.iter().rev().fold(0.0, |value, digit| value * power(STEP) + *digit as f64);
         value * power(STEP * TIERS.start - FRACTION)
     }
+}
+
+/// Is there a tier of this number: one that samples go to, or one of the two for what is carried from them?
+pub fn is_tier(number: i32) -> bool {
+    (TIERS.start..=TIERS.end + 1).contains(&number)
 }
 
 /// Where a sample goes.

@@ -130,10 +130,17 @@ pub(super) const ENCODING: exr::Encoding =
 pub(super) fn layer_attributes(image: &Image, name: &str) -> exr::LayerAttributes {
     exr::LayerAttributes {
         layer_name: Some(name).filter(|name| !name.is_empty()).map(exr::Text::from),
-        software_name: Some(exr::Text::from(format!("velour {}", env!("CARGO_PKG_VERSION")).as_str())),
-        comments: Some(exr::Text::from(note(image).as_str())),
+        software_name: Some(text(&format!("velour {}", env!("CARGO_PKG_VERSION")))),
+        comments: Some(text(&note(image))),
         ..exr::LayerAttributes::default()
     }
+}
+
+/// A text as headers of EXRs have it, one byte a character; what does not fit is written as `\u{43f}`.
+pub(super) fn text(text: &str) -> exr::Text {
+    let escaped = |c: char| if u32::from(c) < 256 { c.to_string() } else { c.escape_unicode().to_string() };
+    exr::Text::new_or_none(text)
+        .unwrap_or_else(|| exr::Text::from(text.chars().map(escaped).collect::<String>().as_str()))
 }
 
 /// What the header says of the picture.

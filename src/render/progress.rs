@@ -5,7 +5,7 @@ pub trait Progress: Sync {
     /// `done` of `total` tiles are finished.
     fn tiles(&self, done: usize, total: usize);
 
-    /// True asks the render to stop; the image then holds the tiles that were finished.
+    /// True asks the render to stop; it does so after a wave of paths at the least, and the picture then holds what was finished.
     fn cancelled(&self) -> bool {
         false
     }

@@ -72,6 +72,8 @@ struct Gathered {
     film: Film,
     rounds: Rounds,
     dropped: Dropped,
+    /// Camera samples that were traced here.
+    paths: u64,
     rays: u64,
     reports: Vec<Report>,
     seconds_tracing: f64,
@@ -84,6 +86,7 @@ impl Gathered {
             film: Film::new(&world.settings),
             rounds: Rounds::new(&world.settings, start),
             dropped: Dropped::default(),
+            paths: 0,
             rays: 0,
             reports: world.reports.clone(),
             seconds_tracing: 0.0,
@@ -91,8 +94,10 @@ impl Gathered {
     }
 
     /// Takes in what a thread has found out of one tile.
-    fn keep(&mut self, task: &Task, wave: &mut Wave) {
+    fn keep(&mut self, settings: &Settings, task: &Task, wave: &mut Wave) {
         self.rounds.done(task);
+        let pixels = Tile::number(settings, task.tile).pixels();
+        self.paths += u64::from(pixels) * u64::from(task.end - task.first);
         self.dropped.merge(&std::mem::take(&mut wave.dropped));
         self.rays += std::mem::take(&mut wave.traced);
         self.reports.extend(wave.shading.take_reports());
@@ -210,17 +215,23 @@ impl Renderer {
     fn trace(&self, tasks: &[Task], progress: &dyn Progress) {
         let Renderer { world, waves, gathered, .. } = self;
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let stop = || world.stop.now() || progress.cancelled();
+        if progress.cancelled() {
+            return;
+        }
+        let (stop, pause) = (|| world.stop.now(), || world.stop.now() || progress.cancelled());
         self.pool.broadcast(|thread| {
             let Ok(mut wave) = waves[thread.index()].lock() else { return };
             let wave = wave.get_or_insert_with(|| Wave::new(world));
-            while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop()) {
+            // A pause that is always due would else keep everything from going on.
+            let mut fresh = true;
+            let goes_on = |fresh: &mut bool| !stop() && (std::mem::take(fresh) || !pause());
+            while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| goes_on(&mut fresh)) {
                 let tile = Tile::number(&world.settings, task.tile);
                 let Ok(mut sums) = gathered.lock().map(|mut all| all.film.take(task.tile)) else { return };
-                let end = render_tile(world, wave, &tile, task.first..task.end, &mut sums, &stop);
+                let end = render_tile(world, wave, &tile, task.first..task.end, &mut sums, [&stop, &pause]);
                 let Ok(mut all) = gathered.lock() else { return };
                 all.film.give(task.tile, sums);
-                all.keep(&Task { end, ..*task }, wave);
+                all.keep(&world.settings, &Task { end, ..*task }, wave);
                 if wave.shading.failed() {
                     next.store(tasks.len(), Ordering::Relaxed);
                 }
@@ -243,20 +254,24 @@ impl Renderer {
     fn about(&self, all: &Gathered) -> About {
         let settings = &self.world.settings;
         let taken = || all.rounds.taken();
-        let paths =
-            |(number, samples): (usize, u32)| u64::from(Tile::number(settings, number).pixels()) * u64::from(samples);
         About {
             scene: file_name(&self.world.scene.name),
             samples: settings.samples,
             taken: [taken().min().unwrap_or(0), taken().max().unwrap_or(0)],
             noise: all.rounds.noise().filter(|_| settings.adapts()),
             seed: settings.seed,
-            paths: taken().enumerate().map(paths).sum(),
+            paths: all.paths,
             rays: all.rays,
             seconds_preparing: self.seconds_preparing,
             seconds_tracing: all.seconds_tracing,
             reports: self.reports(all),
         }
+    }
+
+    /// The fewest and the most samples of a pixel so far.
+    pub fn taken(&self) -> [u32; 2] {
+        let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
+        [all.rounds.taken().min().unwrap_or(0), all.rounds.taken().max().unwrap_or(0)]
     }
 
     /// The samples so far, to be kept in a file and gone on from.

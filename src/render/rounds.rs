@@ -1,7 +1,7 @@
 //! Rounds: how many samples which tiles take next, until the picture is good enough or the time is up.
 //!
-//! A render of a fixed number of samples is one round over all tiles, unless whoever drives it asks for shorter ones. A render that stops by noise or time goes in
-//! rounds: 16 samples a pixel, 24, 32, 48 and so on, every prefix of which fills its strata well. After each round the
+//! A render of a fixed number of samples is one round over all tiles, unless whoever drives it asks for shorter ones. A render that
+//! stops by noise or time goes in rounds: 16 samples a pixel, 24, 32, 48 and so on, every prefix of which fills its strata well. After each round the
 //! two halves of the film give every tile's error. With a time, rounds of 1 and 3 samples come first.
 //!
 //! Decision (2026-11-29): the time ends a render wherever it is, in the middle of the first round or of a shader, instead of after a first
@@ -38,6 +38,9 @@ pub struct Task {
 pub struct Rounds {
     /// Which samples each tile has had.
     held: Vec<Ranges>,
+    /// Tiles of a round that stops by noise or time, and the sample that each goes to: a round that was cut short is brought to its end
+    /// before errors are looked at, so that where it was cut does not show.
+    open: Vec<Task>,
     /// Mean square error of each tile, at the last look; infinite before the first.
     errors: Vec<f64>,
     /// Pixels of each tile.
@@ -58,6 +61,7 @@ impl Rounds {
         };
         Rounds {
             held: vec![Ranges::default(); tiles],
+            open: Vec::new(),
             errors: vec![f64::INFINITY; tiles],
             pixels: (0..tiles).map(pixels).collect(),
             across: settings.width.div_ceil(settings.tile_size) as usize,
@@ -71,9 +75,13 @@ impl Rounds {
     }
 
     /// The tasks of the next round, of at most `most` samples a pixel; none when all is done.
-    pub fn next(&self, settings: &Settings, most: u32) -> Vec<Task> {
+    pub fn next(&mut self, settings: &Settings, most: u32) -> Vec<Task> {
         if self.late() {
             return Vec::new();
+        }
+        let unfinished = self.unfinished();
+        if !unfinished.is_empty() {
+            return unfinished;
         }
         let wanted = |tile: usize| self.held[tile].missing(settings.first_sample..settings.samples).count();
         let furthest = if settings.adapts() { 0 } else { (0..self.held.len()).map(wanted).max().unwrap_or(0) };
@@ -83,11 +91,24 @@ impl Rounds {
             let ahead = if settings.adapts() { 0 } else { furthest - wanted(tile) };
             Task { tile, first, end: end.min(first.saturating_add(most.max(1).saturating_sub(ahead))) }
         };
-        self.wanting(settings).map(task).filter(|task| task.end > task.first).collect()
+        let tasks: Vec<Task> = self.wanting(settings).map(task).filter(|task| task.end > task.first).collect();
+        if settings.adapts() {
+            self.open.clone_from(&tasks);
+        }
+        tasks
+    }
+
+    /// What is left of the round that is open.
+    fn unfinished(&self) -> Vec<Task> {
+        let rest = |task: &Task| Task { first: self.held[task.tile].end().max(task.first), ..*task };
+        self.open.iter().map(rest).filter(|task| task.first < task.end).collect()
     }
 
     /// Looks at what a round has brought; true says that something is left to do.
     pub fn look(&mut self, settings: &Settings, film: &Film) -> bool {
+        if !self.late() && !self.unfinished().is_empty() {
+            return true;
+        }
         if settings.adapts() && (self.taken().all(|samples| samples >= FIRST) || self.late()) {
             self.errors = film.errors(settings);
         }
@@ -215,7 +236,7 @@ mod tests {
         let settings = Settings { samples: 20, width: 64, height: 16, ..Settings::default() };
         let mut rounds = Rounds::new(&settings, Instant::now());
         rounds.held = vec![Ranges::of(0..8), Ranges::of(0..8), Ranges::of(0..3), Ranges::of(0..20)];
-        let ends = |most| rounds.next(&settings, most).iter().map(|t| (t.tile, t.first, t.end)).collect::<Vec<_>>();
+        let mut ends = |most| rounds.next(&settings, most).iter().map(|t| (t.tile, t.first, t.end)).collect::<Vec<_>>();
         assert_eq!(ends(5), [(2, 3, 8)]);
         assert_eq!(ends(8), [(0, 8, 11), (1, 8, 11), (2, 3, 11)]);
         assert_eq!(ends(u32::MAX), [(0, 8, 20), (1, 8, 20), (2, 3, 20)]);

@@ -146,7 +146,7 @@ pub struct Settings {
     pub show_globals: u32,
     /// Lanes of one shading batch, at most `exec::MAX_LANES`; never changes the image.
     pub batch_width: usize,
-    /// Side of a tile in pixels; changes no more than the last bit of the image, unless `noise` or `seconds` is set.
+    /// Side of a tile in pixels; changes nothing of the image, unless `noise` or `seconds` is set.
     pub tile_size: u32,
     /// Paths in flight in one tile; never changes the image.
     pub wave_size: usize,

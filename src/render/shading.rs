@@ -5,7 +5,7 @@ use super::told::Told;
 use crate::closure::tree::Tree;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::exec::{Group, Host, Machine, Points, Report};
-use crate::limits::LOBES;
+use crate::limits;
 use crate::math::columns::Column3;
 use glam::Vec3;
 use std::sync::Arc;
@@ -89,7 +89,8 @@ impl Shading {
         let mut news = Vec::new();
         if let Some(node) = self.lobes.crowded() {
             let place = tree.site_near(node).map(|site| group.place(site)).unwrap_or_default();
-            news.push(Report::fatal(place, format!("a batch has more than {LOBES} lobes, or layers over them")));
+            let most = limits::lobes(tree.lanes);
+            news.push(Report::fatal(place, format!("a batch has more than {most} lobes, or layers over them")));
         }
         if !self.lobes.dropped().is_empty() {
             report_dropped(group, tree, &self.lobes, &mut news);

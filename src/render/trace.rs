@@ -1,5 +1,6 @@
 //! The loop: which stage follows which, bounce after bounce, and how the samples of a tile become sums.
 
+use super::exact::SETTLE;
 use super::film::TileSums;
 use super::path::Path;
 use super::stages::{background::background, camera, globals::show_globals, intersect::intersect};
@@ -59,7 +60,7 @@ fn leave_background_out(wave: &mut Wave) {
 }
 
 /// Adds `samples` of each of the tile's pixels to `sums`, and gives one behind the last that was added: less than was asked for when
-/// `stop` has said so.
+/// `stop` has said so, in the middle of anything, or `pause`, after a wave at the least.
 ///
 /// Where the film has two halves, new samples go to the second; at each power of two all there is moves to the first, so that both
 /// are evenly spread.
@@ -69,16 +70,17 @@ pub fn render_tile(
     tile: &Tile,
     samples: Range<u32>,
     sums: &mut TileSums,
-    stop: &dyn Fn() -> bool,
+    [stop, pause]: [&dyn Fn() -> bool; 2],
 ) -> u32 {
     let halves = world.settings.halves();
     sums.open(tile, halves);
     wave.shading.go_on();
     let mut first = samples.start;
     while first < samples.end {
-        let end = if halves > 1 { samples.end.min((first + 1).next_power_of_two()) } else { samples.end };
-        let done = render_part(world, wave, tile, first..end, sums, stop);
-        if done < end {
+        let power = first.checked_add(1).and_then(u32::checked_next_power_of_two).unwrap_or(u32::MAX);
+        let end = if halves > 1 { samples.end.min(power) } else { samples.end };
+        let done = render_samples(world, wave, tile, first..end, sums, [stop, pause]);
+        if done < end || pause() {
             return done;
         }
         first = end;
@@ -90,22 +92,26 @@ pub fn render_tile(
 ///
 /// Whole pixels are traced at a time when few samples make a wave, else as many samples of all pixels as fill it. What is begun when
 /// `stop` says so is left out, for a sample that some pixels have and others do not could not be gone on from.
-fn render_part(
+fn render_samples(
     world: &World,
     wave: &mut Wave,
     tile: &Tile,
     samples: Range<u32>,
     sums: &mut TileSums,
-    stop: &dyn Fn() -> bool,
+    [stop, pause]: [&dyn Fn() -> bool; 2],
 ) -> u32 {
     let wave_size = world.settings.wave_size.max(1) as u32;
     let count = tile.pixels();
-    let per_pixel = (wave_size / count).clamp(1, samples.len().max(1) as u32);
+    // Sums have room for so many before they are settled.
+    let per_pixel = (wave_size / count).clamp(1, SETTLE.min(samples.len().max(1) as u32));
     let pixels_at_once = (wave_size / per_pixel).clamp(1, count);
     let half = world.settings.halves() - 1;
     let mut joins = half > 0 && samples.start.is_power_of_two();
     for first_sample in samples.clone().step_by(per_pixel as usize) {
-        let range = first_sample..samples.end.min(first_sample + per_pixel);
+        if first_sample > samples.start && pause() {
+            return first_sample;
+        }
+        let range = first_sample..samples.end.min(first_sample.saturating_add(per_pixel));
         let before = (pixels_at_once < count).then(|| sums.clone());
         for first in (0..count).step_by(pixels_at_once as usize) {
             let end = count.min(first + pixels_at_once);

@@ -103,6 +103,17 @@ pub struct ShadowQueue {
     pub crossed: Vec<(u32, u32, Hit)>,
 }
 
+impl ShadowQueue {
+    /// Forgets all rays.
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.clear.clear();
+        self.reached.clear();
+        self.pending.clear();
+        self.crossed.clear();
+    }
+}
+
 impl Wave {
     /// Empty scratch.
     pub fn new(world: &World) -> Self {
@@ -135,6 +146,9 @@ impl Wave {
         self.positions.clear();
         self.active.clear();
         self.next.clear();
+        // Rays of a wave that was stopped in the middle would light paths of this one.
+        self.light_shadows.clear();
+        self.sky_shadows.clear();
     }
 
     /// Takes a batch of the sorted paths into work.

@@ -2,8 +2,9 @@
 
 use super::file::{TextureError, read_allowed};
 use super::pyramid::Texture;
-use crate::limits::SHADER_BYTES;
+use crate::limits::{SHADER_BYTES, TEXTURE_BYTES};
 use std::collections::HashMap;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
@@ -86,8 +87,12 @@ impl TextureFiles {
         String::from_utf8(bytes).map_err(|_| unread("it is not UTF-8 text".to_owned()))
     }
 
-    /// Where the file of a name is.
-    pub fn find(&self, name: &str) -> Option<PathBuf> {
+    /// The file of a name, and how many bytes it has; nothing where there is none, or one that is too large.
+    pub fn open(&self, name: &str) -> Option<(File, u64)> {
+        self.access.open(&self.find(name)?, TEXTURE_BYTES).ok()
+    }
+
+    fn find(&self, name: &str) -> Option<PathBuf> {
         let here = Path::new(name);
         let beside = self.folders.iter().map(|folder| folder.join(name));
         std::iter::once(here.to_owned()).chain(beside).find(|path| !name.is_empty() && self.access.is_file(path))

@@ -4,7 +4,7 @@ use super::subject::Scatterer;
 use crate::closure::tree::Tree;
 use crate::closure::{Evaluation, Lobes, Samples, Settings};
 use crate::exec::{Group, Machine, Points};
-use crate::limits::LOBES;
+use crate::limits;
 use crate::math::columns::Column3;
 use glam::Vec3;
 
@@ -102,7 +102,8 @@ impl Scatterer for TreeScatterer {
             self.complaint = Some(format!("{place}`{}` has a parameter or weight that is no number", dropped.closure));
         }
         if let (Some(_), None) = (self.lobes.crowded(), &self.complaint) {
-            self.complaint = Some(format!("a batch has more than {LOBES} lobes, or layers over them"));
+            let most = limits::lobes(tree.lanes);
+            self.complaint = Some(format!("a batch has more than {most} lobes, or layers over them"));
         }
         for report in self.machine.take_reports() {
             self.failed |= report.is_fatal();

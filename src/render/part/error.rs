@@ -34,8 +34,16 @@ impl fmt::Display for PartError {
             PartError::Unreadable { path, reason } => {
                 write!(f, "R0301: {} is no part of a picture: {reason}", path.display())
             }
-            PartError::OfAnother(difference) => write!(f, "R0302: this is part of another picture: {difference}"),
-            PartError::Twice { samples, .. } => write!(f, "R0303: samples {samples} would count twice"),
+            PartError::OfAnother(difference) => write!(
+                f,
+                "R0302: this is part of another picture: {difference}\n  help: parts are of one picture when scene, shaders, textures, settings, size and seed are the same"
+            ),
+            PartError::Twice { samples, .. } => {
+                write!(
+                    f,
+                    "R0303: samples {samples} would count twice\n  help: leave out one of the parts that hold them"
+                )
+            }
             PartError::Adapts => f.write_str(
                 "R0304: a render that stops by noise or time has no fixed samples, so it cannot go on from a part",
             ),

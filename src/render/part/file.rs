@@ -2,18 +2,28 @@
 //! integers and says in its comments what they are.
 
 use super::super::error::OutputError;
-use super::super::exact::{PARTS, Sums, Tier};
+use super::super::exact::{self, PARTS, Sums, Tier};
 use super::super::image::Image;
 use super::super::output;
 use super::error::PartError;
 use super::ranges::Ranges;
 use super::samples::{Part, Whole};
+use ::exr::meta::header::Header;
 use exr::prelude as exr;
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// The first line of the comments; a later one of another form has another number.
 const FORM: &str = "velour part 1";
+
+/// The most pixels of a picture.
+const MOST_PIXELS: usize = 1 << 27;
+
+/// Ten tiers and two for carries, of five numbers of two words each.
+const MOST_CHANNELS: usize = 120;
+
+/// Times that a file may be smaller than its numbers: runs of equal bytes are packed 64 to one.
+const MOST_PACKED: u64 = 80;
 
 /// The name of the layer with the sums.
 const LAYER: &str = "velour sums";
@@ -42,7 +52,7 @@ fn encode(part: &Part, image: &Image, sink: &mut (impl std::io::Write + std::io:
     let tiers = part.sums().clone().settled();
     let channels = tiers.iter().flat_map(|tier| (0..PARTS).flat_map(move |k| words(tier, k)));
     let attributes = exr::LayerAttributes {
-        comments: Some(exr::Text::from(description(part).as_str())),
+        comments: Some(output::text(&description(part, checked(&tiers)))),
         ..exr::LayerAttributes::named(LAYER)
     };
     let sums = exr::Layer::new(size, attributes, output::ENCODING, exr::AnyChannels::sort(channels.collect()));
@@ -64,11 +74,20 @@ fn words(tier: &Tier, k: usize) -> Vec<exr::AnyChannel<exr::FlatSamples>> {
     vec![channel("high", 32), channel("low", 0)]
 }
 
+/// A number that changes when a bit of the sums does.
+fn checked(tiers: &[Tier]) -> u64 {
+    let bytes = |tier: &Tier| {
+        let numbers = tier.sums.iter().flatten().flat_map(|sum| sum.to_le_bytes());
+        tier.number.to_le_bytes().into_iter().chain(numbers).collect::<Vec<u8>>()
+    };
+    tiers.iter().fold(0, |sum, tier| sum.rotate_left(1) ^ farmhash::fingerprint64(&bytes(tier)))
+}
+
 /// What the sums are, a line each. Tiles are told in runs: `240x0..64` for 240 tiles of the same samples.
-fn description(part: &Part) -> String {
+fn description(part: &Part, sums: u64) -> String {
     let Whole { scene, fingerprint, version, width, height, alpha, seed, tile_size } = &part.of;
     let mut text = format!("{FORM}\nversion {version}\nfingerprint {fingerprint:016x}\nsize {width} {height}\n");
-    let _ = write!(text, "alpha {alpha}\nseed {seed}\ntile {tile_size}\ntiles ");
+    let _ = write!(text, "alpha {alpha}\nseed {seed}\nsums {sums:016x}\ntile {tile_size}\ntiles ");
     for run in part.held.chunk_by(|a, b| a == b) {
         let _ = write!(text, " {}x{}", run.len(), run[0]);
     }
@@ -83,25 +102,49 @@ fn description(part: &Part) -> String {
 /// The file cannot be read, or is no part.
 pub fn read(path: &Path) -> Result<Part, PartError> {
     // The decoder is others' code: whatever a broken file makes it do ends here.
-    let decoded =
-        std::panic::catch_unwind(|| decode(path)).unwrap_or_else(|_| Err("its decoder has given up".to_owned()));
-    decoded.map_err(|reason| PartError::Unreadable { path: path.to_owned(), reason })
+    let fail = |reason: String| PartError::Unreadable { path: path.to_owned(), reason };
+    let given_up = || Err("its decoder has given up".to_owned());
+    std::panic::catch_unwind(|| bounded(path)).unwrap_or_else(|_| given_up()).map_err(fail)?;
+    let image =
+        std::panic::catch_unwind(|| layers(path)).unwrap_or_else(|_| Err("its decoder has given up".to_owned()));
+    assemble(&image.map_err(fail)?).map_err(fail)
 }
 
-fn decode(path: &Path) -> Result<Part, String> {
+/// Refuses what claims to be larger than any part is, before memory is taken for it.
+fn bounded(path: &Path) -> Result<(), String> {
+    // Before it is opened, for a pipe would wait for ever.
+    let found = std::fs::metadata(path).map_err(|error| error.to_string())?;
+    if !found.is_file() {
+        return Err("it is no regular file".to_owned());
+    }
+    let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
+    let headers = exr::MetaData::read_from_unbuffered(file, false).map_err(|error| error.to_string())?.headers;
+    let size = |header: &Header| header.layer_size.0.saturating_mul(header.layer_size.1);
+    let numbers = |header: &Header| size(header).saturating_mul(header.channels.list.len()) as u64;
+    let room = found.len().saturating_mul(MOST_PACKED) / 4;
+    let large = |header: &Header| {
+        size(header) > MOST_PIXELS || header.channels.list.len() > MOST_CHANNELS || numbers(header) > room
+    };
+    if headers.len() > 2 || headers.iter().any(large) { Err("it is larger than parts are".to_owned()) } else { Ok(()) }
+}
+
+/// What the decoder makes of the file.
+type Layers = exr::Image<exr::Layers<exr::AnyChannels<exr::FlatSamples>>>;
+
+fn layers(path: &Path) -> Result<Layers, String> {
     use exr::{ReadChannels, ReadLayers};
     let reader = exr::read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
-    let image = reader.from_file(path).map_err(|error| error.to_string())?;
+    reader.from_file(path).map_err(|error| error.to_string())
+}
+
+fn assemble(image: &Layers) -> Result<Part, String> {
     let named = |layer: &&exr::Layer<exr::AnyChannels<exr::FlatSamples>>| {
         layer.attributes.layer_name.as_ref().is_some_and(|name| name.eq(LAYER))
     };
     let none = "it has no sums; a render leaves them with --samples, or when it is stopped";
     let layer = image.layer_data.iter().find(named).ok_or(none)?;
     let text = layer.attributes.comments.as_ref().map(ToString::to_string).unwrap_or_default();
-    let (of, held) = understand(&text).ok_or("it does not say what its sums are")?;
-    if (layer.size.0, layer.size.1) != (of.width as usize, of.height as usize) {
-        return Err("its size is not what it says".to_owned());
-    }
+    let (of, held, sums) = understand(&text, layer.size).ok_or("it does not say what its sums are")?;
     let mut tiers: Vec<Tier> = Vec::new();
     for channel in &layer.channel_data.list {
         let name = channel.name.to_string();
@@ -116,6 +159,10 @@ fn decode(path: &Path) -> Result<Part, String> {
         let sums = tiers[at].sums.iter_mut();
         sums.zip(samples).for_each(|(sum, word)| sum[k] |= ((u64::from(*word)) << shift) as i64);
     }
+    tiers.sort_unstable_by_key(|tier| tier.number);
+    if checked(&tiers) != sums {
+        return Err("it is damaged: its sums are not those that were written".to_owned());
+    }
     let sums = Sums::of(tiers).ok_or("its sums are incomplete")?;
     Ok(Part::new(of, held, sums))
 }
@@ -129,12 +176,13 @@ fn placed(name: &str) -> Option<(i32, usize, u32)> {
         "low" => 0,
         _ => return None,
     };
+    exact::is_tier(number).then_some(())?;
     Some((number, WORDS.iter().position(|word| *word == part)?, shift))
 }
 
-/// What a description says.
-fn understand(text: &str) -> Option<(Whole, Vec<Ranges>)> {
-    let (lines, scene) = text.strip_prefix(FORM)?.split_once("\nscene ")?;
+/// What a description of sums of this size says: of which picture, the samples of each tile, and what the sums were when written.
+fn understand(text: &str, size: exr::Vec2<usize>) -> Option<(Whole, Vec<Ranges>, u64)> {
+    let (lines, scene) = text.strip_prefix(FORM)?.strip_prefix('\n')?.split_once("\nscene ")?;
     let field = |name: &str| lines.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
     let (width, height) = field("size")?.split_once(' ')?;
     let of = Whole {
@@ -147,6 +195,10 @@ fn understand(text: &str) -> Option<(Whole, Vec<Ranges>)> {
         seed: field("seed")?.parse().ok()?,
         tile_size: field("tile")?.parse().ok()?,
     };
+    if (of.width as usize, of.height as usize) != (size.0, size.1) {
+        return None;
+    }
+    let sums = u64::from_str_radix(field("sums")?, 16).ok()?;
     let tiles = of.tiles()?;
     let mut held = Vec::new();
     for run in field("tiles")?.split_whitespace() {
@@ -159,5 +211,5 @@ fn understand(text: &str) -> Option<(Whole, Vec<Ranges>)> {
         }
         held.extend(std::iter::repeat_n(ranges, count));
     }
-    (held.len() == tiles).then_some((of, held))
+    (held.len() == tiles).then_some((of, held, sums))
 }

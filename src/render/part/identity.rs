@@ -7,7 +7,6 @@ use crate::scene::{Geometry, Scene, Shape};
 use crate::texture::{is_tiled, tile_name};
 use glam::{Vec2, Vec3};
 use std::fmt::Write;
-use std::fs::File;
 use std::io::Read;
 
 /// A number that stands for what `scene` and `settings` make of a sample: two that differ have other samples, two of one number have
@@ -44,10 +43,15 @@ struct Digest {
 const PIECE: usize = 1 << 16;
 
 impl Digest {
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.piece.extend_from_slice(bytes);
-        if self.piece.len() >= PIECE {
-            self.turn();
+    /// Takes bytes; how they come in pieces does not show.
+    fn bytes(&mut self, mut bytes: &[u8]) {
+        while !bytes.is_empty() {
+            let (now, later) = bytes.split_at(bytes.len().min(PIECE - self.piece.len()));
+            self.piece.extend_from_slice(now);
+            bytes = later;
+            if self.piece.len() == PIECE {
+                self.turn();
+            }
         }
     }
 
@@ -83,9 +87,11 @@ impl Digest {
 
     /// The content of the file that a shader's text names, if it names one.
     fn file(&mut self, scene: &Scene, name: &str) {
-        let Some(mut file) = scene.textures.find(name).and_then(|path| File::open(path).ok()) else { return };
+        // What cannot be read, or is too large, is told by the render.
+        let Some((file, size)) = scene.textures.open(name) else { return };
+        let _ = write!(self, "file {name:?} {size} ");
+        let mut file = file.take(size);
         let mut piece = vec![0; PIECE];
-        // What cannot be read is told by the render.
         while let Ok(count @ 1..) = file.read(&mut piece) {
             self.bytes(&piece[..count]);
         }

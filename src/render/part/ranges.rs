@@ -68,6 +68,13 @@ impl Ranges {
         shared
     }
 
+    /// The numbers of `other` that are not here.
+    pub fn lacking(&self, other: &Ranges) -> Ranges {
+        let mut lacking = Ranges::default();
+        other.iter().for_each(|range| self.missing(range.clone()).iter().for_each(|gap| lacking.insert(gap.clone())));
+        lacking
+    }
+
     /// The numbers of `whole` that are not here.
     pub fn missing(&self, whole: Range<u32>) -> Ranges {
         let mut missing = Ranges::default();
