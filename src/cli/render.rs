@@ -193,25 +193,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     for warning in &scene.warnings {
         tell(&format!("{warning}\n"));
     }
-    let mut settings = settings(args).with_options(&scene.options);
-    if let Some(range) = args.samples.as_ref().and_then(|ranges| ranges.iter().next()) {
-        (settings.first_sample, settings.samples) = (range.start, range.end);
-    }
-    if let Some(share) = args.share {
-        let few = || {
-            Failure::Usage(format!(
-                "error: {} samples are too few for so many shares\n  help: take fewer shares, or more samples with --spp",
-                settings.samples
-            ))
-        };
-        let range = share.range(settings.samples).ok_or_else(few)?;
-        (settings.first_sample, settings.samples) = (range.start, range.end);
-    }
-    if let ([], Some(stated)) = (&args.res[..], scene.options.resolution) {
-        [settings.width, settings.height] = stated;
-    }
-    settings.threads = capped(args.threads);
-    settings.seconds = args.time.map(|seconds| time_to_trace(seconds, start, &settings));
+    let mut settings = settings_for(args, &scene, start)?;
     if let Some(tolerance) = args.tolerance {
         settings.closure = chosen(args, tolerance, settings.closure);
     }
@@ -226,19 +208,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(pixel) = debug {
         return debug_pixel(&renderer, pixel);
     }
-    if let Some(file) = &args.resume {
-        if !args.compile.access()?.covers(file) {
-            return Err(Failure::Usage(format!("error: {} is not in the sandbox", file.display())));
-        }
-        let wrong = |error| Failure::Wrong(format!("error: {error}"));
-        let part = part::read(file).map_err(|error| Failure::Usage(format!("error: {error}")))?;
-        renderer.resume(part).map_err(wrong)?;
-    }
+    go_on(args, &mut renderer)?;
     let every = Some(args.checkpoint).filter(|seconds| *seconds > 0.0);
     let keeping = Keeping { output: path, every, parts: args.leaves_part(), resumed: args.resume.as_deref() };
     let signals = Signals::listen(renderer.stop())?;
     let outcome = keeping.render(&mut renderer, &signals)?;
-    let about = renderer.picture().about;
+    let about = renderer.about();
     pass_on(&about.reports);
     keeping.write(&renderer, outcome)?;
     if let Some(status) = signals.asked().filter(|_| !outcome.done) {
@@ -246,6 +221,36 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     tell(&last_line(&about, renderer.settings(), path, start.elapsed().as_secs_f64()));
     Ok(())
+}
+
+/// The settings of the command and the scene together.
+fn settings_for(args: &RenderArgs, scene: &Scene, start: Instant) -> Result<Settings, Failure> {
+    let mut settings = settings(args).with_options(&scene.options);
+    if let Some(range) = args.samples.as_ref().and_then(|ranges| ranges.iter().next()) {
+        (settings.first_sample, settings.samples) = (range.start, range.end);
+    }
+    if let Some(share) = args.share {
+        let few = format!("error: {} samples are too few for so many shares", settings.samples);
+        let few = || Failure::Usage(format!("{few}\n  help: take fewer shares, or more samples with --spp"));
+        let range = share.range(settings.samples).ok_or_else(few)?;
+        (settings.first_sample, settings.samples) = (range.start, range.end);
+    }
+    if let ([], Some(stated)) = (&args.res[..], scene.options.resolution) {
+        [settings.width, settings.height] = stated;
+    }
+    settings.threads = capped(args.threads);
+    settings.seconds = args.time.map(|seconds| time_to_trace(seconds, start, &settings));
+    Ok(settings)
+}
+
+/// Goes on from the part of `--resume`, if there is one.
+fn go_on(args: &RenderArgs, renderer: &mut Renderer) -> Result<(), Failure> {
+    let Some(file) = &args.resume else { return Ok(()) };
+    if !args.compile.access()?.covers(file) {
+        return Err(Failure::Usage(format!("error: {} is not in the sandbox", file.display())));
+    }
+    let part = part::read(file).map_err(|error| Failure::Usage(format!("error: {error}")))?;
+    renderer.resume(part).map_err(|error| Failure::Wrong(format!("error: {error}")))
 }
 
 /// Says before the render what could not be written after it.

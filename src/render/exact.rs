@@ -60,7 +60,7 @@ impl Sums {
     #[inline]
     pub fn splat(&mut self, first: usize, row: usize, columns: [f64; 2], rows: [f64; 2], light: [f32; 3], alpha: f32) {
         // What amplifies without end would make a sum of alpha overflow.
-        let alpha = f64::from(alpha.max(-2048.0).min(2048.0));
+        let alpha = if alpha.is_nan() { 0.0 } else { f64::from(alpha.clamp(-2048.0, 2048.0)) };
         let place = Place { first, row, columns, rows };
         let most = light[0].abs().max(light[1].abs()).max(light[2].abs());
         let [r, g, b] = light.map(f64::from);

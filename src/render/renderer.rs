@@ -247,11 +247,15 @@ impl Renderer {
         let settings = &self.world.settings;
         let channels = if settings.alpha { 4 } else { 3 };
         let pixels = all.film.picture(settings, 0..settings.halves(), channels);
-        Image { width: settings.width, height: settings.height, channels, pixels, about: self.about(&all) }
+        Image { width: settings.width, height: settings.height, channels, pixels, about: self.about_of(&all) }
     }
 
-    /// What is known of the picture so far.
-    fn about(&self, all: &Gathered) -> About {
+    /// What is known of the picture so far, without the picture.
+    pub fn about(&self) -> About {
+        self.about_of(&self.gathered.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn about_of(&self, all: &Gathered) -> About {
         let settings = &self.world.settings;
         let taken = || all.rounds.taken();
         About {
