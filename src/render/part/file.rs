@@ -96,7 +96,7 @@ fn description(part: &Part, sums: u64) -> String {
     text
 }
 
-/// Reads a part that [`write`] has written.
+/// Reads a part that [`write()`] has written.
 ///
 /// # Errors
 /// The file cannot be read, or is no part.
