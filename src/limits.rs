@@ -59,16 +59,9 @@ pub const CLOSURE_NODES: usize = 1 << 18;
 /// Numbers in the columns of the closure tree of a batch, 64 MB.
 pub const CLOSURE_NUMBERS: usize = 1 << 24;
 
-/// Lobes of a batch times its points, and as many layers over them, and weights on their way: all together take some 300 MB.
-pub const LANE_LOBES: usize = 1 << 21;
-
-/// The most lobes of a batch of any number of points, and as many layers over them, and weights on their way.
-pub const MOST_LOBES: usize = 1 << 16;
-
-/// How many lobes a batch of so many points may have.
-pub const fn lobes(points: usize) -> usize {
-    let most = LANE_LOBES / if points == 0 { 1 } else { points };
-    if most < MOST_LOBES { most } else { MOST_LOBES }
+/// Lobes of a batch of so many points, and as many layers over them, and weights on their way: all together take some 300 MB.
+pub fn lobes(points: usize) -> usize {
+    ((1 << 21) / points.max(1)).min(1 << 16)
 }
 
 /// Steps that a regular expression may go back in one text.
@@ -115,6 +108,15 @@ pub const ABOUT_BYTES: usize = 1 << 16;
 
 /// Bytes of a texture's file; decoded it must fit into the memory of textures.
 pub const TEXTURE_BYTES: u64 = 16 << 30;
+
+/// Pixels of a picture.
+pub const PIXELS: u64 = 1 << 27;
+
+/// Channels of the file of a part: ten tiers and two for carries, of five numbers of two words each.
+pub const PART_CHANNELS: usize = 120;
+
+/// Times that the file of a part may be smaller than its numbers: runs of equal bytes are packed 64 to one.
+pub const PART_PACKED: u64 = 80;
 
 /// Bounces of a path: more make no difference, as roulette ends paths from [`ROULETTE`] on.
 pub const BOUNCES: u32 = 1_000_000;

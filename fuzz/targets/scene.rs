@@ -9,4 +9,4 @@ use std::sync::LazyLock;
 
 static FOLDER: LazyLock<tempfile::TempDir> = LazyLock::new(|| tempfile::tempdir().unwrap());
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| (kinds::KINDS[2].read)(bytes, FOLDER.path()));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| (kinds::SCENE_XML.read)(bytes, FOLDER.path()));

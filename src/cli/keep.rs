@@ -94,12 +94,16 @@ impl Keeping<'_> {
         if special || output::is_standard_output(self.output) {
             return None;
         }
-        if self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
+        if self.is_exr() {
             return Some(self.output.to_owned());
         }
         let mut name = self.output.as_os_str().to_owned();
         name.push(".part.exr");
         Some(PathBuf::from(name))
+    }
+
+    fn is_exr(&self) -> bool {
+        output::format(self.output).is_ok_and(|format| format == output::Format::Exr)
     }
 
     /// Renders to the end, or until it is asked to stop; writes parts on the way.
@@ -151,37 +155,31 @@ impl Keeping<'_> {
         let done = outcome.done;
         let part_file = self.part_file();
         let beside = part_file.as_ref().filter(|file| *file != self.output);
-        let exr = output::check(self.output).is_ok_and(|format| format == output::Format::Exr);
-        let is_part = exr && beside.is_none() && (self.parts || !done);
-        let written = if is_part {
-            part::write(&renderer.part(), self.output)
-        } else {
-            output::write(&renderer.picture(), self.output)
+        let failed = |message| Failure::Usage(format!("error: {message}{}", self.rescue(renderer)));
+        let is_part = self.is_exr() && (self.parts || !done);
+        let part = (is_part || !done).then(|| renderer.part());
+        let written = match part.as_ref().filter(|_| is_part) {
+            Some(part) => part::write(part, self.output),
+            None => output::write(&renderer.picture(), self.output),
         };
-        if let Err(message) = written {
-            return Err(Failure::Usage(format!("error: {message}{}", self.rescue(renderer))));
-        }
+        written.map_err(failed)?;
         match beside {
             // A part that was written on the way, or gone on from, has done its work; one that another render has left is that one's.
             Some(file) if done && (outcome.kept || self.resumed == Some(file)) => drop(std::fs::remove_file(file)),
-            Some(_) if done => {}
-            Some(file) => {
-                let kept = part::write(&renderer.part(), file);
-                kept.map_err(|message| Failure::Usage(format!("error: {message}{}", self.rescue(renderer))))?;
-            }
+            Some(file) => part.iter().try_for_each(|part| part::write(part, file)).map_err(failed)?,
             None => {}
         }
-        if !done {
-            self.tell_stopped(renderer, part_file.as_deref());
+        if let Some(part) = part.filter(|_| !done) {
+            self.tell_stopped(&part, renderer.settings().adapts(), part_file.as_deref());
         }
         Ok(())
     }
 
     /// Says what a stopped render has left, and how to go on.
-    fn tell_stopped(&self, renderer: &Renderer, part_file: Option<&Path>) {
-        let held = renderer.part().summary();
+    fn tell_stopped(&self, part: &Part, adapts: bool, part_file: Option<&Path>) {
+        let held = part.summary();
         let go_on = match part_file {
-            Some(file) if renderer.settings().adapts() => {
+            Some(file) if adapts => {
                 format!("; `--resume {} --spp N` instead of --noise or --time adds more", file.display())
             }
             Some(file) => format!("; `--resume {}` goes on", file.display()),

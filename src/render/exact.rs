@@ -109,7 +109,7 @@ impl Sums {
                 self.tiers[at].sums.iter_mut().map(|sum| sum.each_mut().map(carry)).collect();
             if carried.iter().any(|carried| *carried != [0; PARTS]) {
                 let above = &mut self.tier(number + 1).sums;
-                above.iter_mut().zip(carried).for_each(|(sum, more)| (0..PARTS).for_each(|k| sum[k] += more[k]));
+                above.iter_mut().zip(&carried).for_each(|(sum, more)| plus(sum, more));
             }
         }
     }
@@ -118,9 +118,7 @@ impl Sums {
     pub fn drain(&mut self, other: &mut Sums) {
         for tier in &mut other.tiers {
             let sums = &mut self.tier(tier.number).sums;
-            for (sum, more) in sums.iter_mut().zip(&mut tier.sums) {
-                (0..PARTS).for_each(|k| sum[k] += std::mem::take(&mut more[k]));
-            }
+            sums.iter_mut().zip(&mut tier.sums).for_each(|(sum, more)| plus(sum, &std::mem::take(more)));
         }
     }
 
@@ -128,9 +126,7 @@ impl Sums {
     pub fn add_some(&mut self, to: usize, other: &Sums, from: Range<usize>) {
         for tier in &other.tiers {
             let sums = &mut self.tier(tier.number).sums[to..to + from.len()];
-            for (sum, more) in sums.iter_mut().zip(&tier.sums[from.clone()]) {
-                (0..PARTS).for_each(|k| sum[k] += more[k]);
-            }
+            sums.iter_mut().zip(&tier.sums[from.clone()]).for_each(|(sum, more)| plus(sum, more));
         }
     }
 
@@ -209,6 +205,10 @@ fn add(sums: &mut [[i64; PARTS]], place: &Place, value: [f64; PARTS]) {
             }
         }
     }
+}
+
+fn plus(sum: &mut [i64; PARTS], more: &[i64; PARTS]) {
+    (0..PARTS).for_each(|k| sum[k] += more[k]);
 }
 
 /// Leaves what is nearest to zero and gives the rest in units of the next tier. So small sums of either sign carry nothing.

@@ -43,6 +43,16 @@ pub(super) fn write_with(path: &Path, encode: impl FnOnce(&mut Sink) -> Result<(
     written.map_err(|error| unwritable(path, error.to_string()))
 }
 
+/// The format that a name asks for.
+///
+/// # Errors
+/// It is none that can be written.
+pub fn format(path: &Path) -> Result<Format, OutputError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let found = standard_format(path).or_else(|| format_named(&extension));
+    found.ok_or_else(|| OutputError::UnknownFormat { path: path.to_owned() })
+}
+
 /// Does a picture of this name go to standard output?
 pub fn is_standard_output(path: &Path) -> bool {
     standard_format(path).is_some()
@@ -50,12 +60,10 @@ pub fn is_standard_output(path: &Path) -> bool {
 
 /// The format and the destination of a name.
 fn look(path: &Path) -> Result<(Format, Destination), OutputError> {
-    if let Some(format) = standard_format(path) {
+    let format = format(path)?;
+    if is_standard_output(path) {
         return Ok((format, at(Path::new("-"))?));
     }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let unknown = || OutputError::UnknownFormat { path: path.to_owned() };
-    let format = format_named(&extension).ok_or_else(unknown)?;
     let folder = folder_of(path);
     if !folder.is_dir() {
         return Err(OutputError::NoFolder { folder: folder.to_owned() });

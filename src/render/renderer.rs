@@ -5,7 +5,7 @@ use super::displace::displaced;
 use super::error::RenderError;
 use super::film::Film;
 use super::image::{About, Image};
-use super::part::{Part, PartError, Whole, fingerprint};
+use super::part::{Part, PartError, Whole, counts, fingerprint};
 use super::path::Dropped;
 use super::plan::Plan;
 use super::progress::Progress;
@@ -257,11 +257,10 @@ impl Renderer {
 
     fn about_of(&self, all: &Gathered) -> About {
         let settings = &self.world.settings;
-        let taken = || all.rounds.taken();
         About {
             scene: file_name(&self.world.scene.name),
             samples: settings.samples,
-            taken: [taken().min().unwrap_or(0), taken().max().unwrap_or(0)],
+            taken: counts(all.rounds.held()),
             noise: all.rounds.noise().filter(|_| settings.adapts()),
             seed: settings.seed,
             paths: all.paths,
@@ -274,8 +273,7 @@ impl Renderer {
 
     /// The fewest and the most samples of a pixel so far.
     pub fn taken(&self) -> [u32; 2] {
-        let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
-        [all.rounds.taken().min().unwrap_or(0), all.rounds.taken().max().unwrap_or(0)]
+        counts(self.gathered.lock().unwrap_or_else(PoisonError::into_inner).rounds.held())
     }
 
     /// The samples so far, to be kept in a file and gone on from.

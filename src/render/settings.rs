@@ -1,7 +1,7 @@
 //! What a user can set about a render.
 
 use super::error::SettingsError;
-use crate::limits::{BOUNCES, ROULETTE};
+use crate::limits::{BOUNCES, PIXELS, ROULETTE};
 use crate::scene::Options;
 use crate::{closure, exec};
 use std::str::FromStr;
@@ -217,7 +217,7 @@ impl Settings {
 
     /// Says what cannot be rendered, if anything.
     pub fn check(&self) -> Result<(), SettingsError> {
-        if self.width == 0 || self.height == 0 || u64::from(self.width) * u64::from(self.height) > 1 << 27 {
+        if self.width == 0 || self.height == 0 || u64::from(self.width) * u64::from(self.height) > PIXELS {
             return Err(SettingsError::Size { width: self.width, height: self.height });
         }
         if self.samples <= self.first_sample {

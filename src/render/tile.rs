@@ -18,8 +18,12 @@ pub struct Tile {
 impl Tile {
     /// How many tiles an image has.
     pub fn count(settings: &Settings) -> usize {
-        let across = |n: u32| n.div_ceil(settings.tile_size) as usize;
-        across(settings.width) * across(settings.height)
+        Tile::count_of([settings.width, settings.height], settings.tile_size)
+    }
+
+    /// How many tiles of a side, above 0, an image of a size has.
+    pub fn count_of(size: [u32; 2], side: u32) -> usize {
+        size.map(|n| n.div_ceil(side) as usize).into_iter().product()
     }
 
     /// The tile of a number, row by row.

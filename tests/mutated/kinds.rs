@@ -24,16 +24,19 @@ pub struct Kind {
     pub read: fn(&[u8], &Path),
 }
 
-/// All of them.
-pub const KINDS: [Kind; 7] = [
-    Kind { name: "shader", few: 1500, extensions: &["osl", "h"], own: shaders, words: WORDS, read: read_shader },
-    Kind { name: "group", few: 5000, extensions: &["group"], own: groups, words: GROUP_WORDS, read: read_group },
-    Kind { name: "scene", few: 800, extensions: &["xml"], own: scenes, words: XML_WORDS, read: read_scene },
-    Kind { name: "mesh", few: 800, extensions: &["obj"], own: meshes, words: OBJ_WORDS, read: read_mesh },
-    Kind { name: "materials", few: 800, extensions: &["mtl"], own: materials, words: MTL_WORDS, read: read_materials },
-    Kind { name: "part", few: 400, extensions: &[], own: parts, words: PART_WORDS, read: read_part },
-    Kind { name: "texture", few: 800, extensions: &[], own: textures, words: PART_WORDS, read: read_texture },
-];
+pub const SHADER: Kind =
+    Kind { name: "shader", few: 1500, extensions: &["osl", "h"], own: shaders, words: WORDS, read: read_shader };
+pub const GROUP: Kind =
+    Kind { name: "group", few: 5000, extensions: &["group"], own: groups, words: GROUP_WORDS, read: read_group };
+pub const SCENE_XML: Kind =
+    Kind { name: "scene", few: 800, extensions: &["xml"], own: scenes, words: XML_WORDS, read: read_scene };
+pub const MESH: Kind =
+    Kind { name: "mesh", few: 800, extensions: &["obj"], own: meshes, words: OBJ_WORDS, read: read_mesh };
+pub const MATERIALS: Kind =
+    Kind { name: "materials", few: 800, extensions: &["mtl"], own: materials, words: MTL_WORDS, read: read_materials };
+pub const PART: Kind = Kind { name: "part", few: 400, extensions: &[], own: parts, words: PART_WORDS, read: read_part };
+pub const TEXTURE: Kind =
+    Kind { name: "texture", few: 800, extensions: &[], own: textures, words: PART_WORDS, read: read_texture };
 
 fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
     texts.iter().map(|text| text.as_bytes().to_vec()).collect()

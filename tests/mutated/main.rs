@@ -7,7 +7,7 @@ mod change;
 mod kinds;
 
 use change::{Random, changed};
-use kinds::{KINDS, Kind};
+use kinds::Kind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Mutex;
@@ -88,44 +88,44 @@ fn try_kind(kind: &Kind) {
 
 #[test]
 fn shaders() {
-    try_kind(&KINDS[0]);
+    try_kind(&kinds::SHADER);
 }
 
 #[test]
 fn groups() {
-    try_kind(&KINDS[1]);
+    try_kind(&kinds::GROUP);
 }
 
 #[test]
 fn scenes() {
-    try_kind(&KINDS[2]);
+    try_kind(&kinds::SCENE_XML);
 }
 
 #[test]
 fn meshes() {
-    try_kind(&KINDS[3]);
+    try_kind(&kinds::MESH);
 }
 
 #[test]
 fn materials() {
-    try_kind(&KINDS[4]);
+    try_kind(&kinds::MATERIALS);
 }
 
 #[test]
 fn parts() {
-    try_kind(&KINDS[5]);
+    try_kind(&kinds::PART);
 }
 
 #[test]
 fn textures() {
-    try_kind(&KINDS[6]);
+    try_kind(&kinds::TEXTURE);
 }
 
 #[test]
 fn a_panic_and_a_long_time_are_found() {
     let panics = |_: &[u8], _: &Path| panic!("as it must");
-    let kind = Kind { read: panics, ..KINDS[0] };
+    let kind = Kind { read: panics, ..kinds::SHADER };
     assert_eq!(flaw(&kind, b"", Path::new("")).as_deref(), Some("a panic"));
     let slow = |_: &[u8], _: &Path| std::thread::sleep(std::time::Duration::from_secs_f64(SECONDS + 0.1));
-    assert!(flaw(&Kind { read: slow, ..KINDS[0] }, b"", Path::new("")).is_some_and(|flaw| flaw.ends_with(" s")));
+    assert!(flaw(&Kind { read: slow, ..kinds::SHADER }, b"", Path::new("")).is_some_and(|flaw| flaw.ends_with(" s")));
 }

@@ -8,6 +8,7 @@ use super::super::output;
 use super::error::PartError;
 use super::ranges::Ranges;
 use super::samples::{Part, Whole};
+use crate::limits::{PART_CHANNELS, PART_PACKED, PIXELS};
 use ::exr::meta::header::Header;
 use exr::prelude as exr;
 use std::fmt::Write as _;
@@ -15,15 +16,6 @@ use std::path::Path;
 
 /// The first line of the comments; a later one of another form has another number.
 const FORM: &str = "velour part 1";
-
-/// The most pixels of a picture.
-const MOST_PIXELS: usize = 1 << 27;
-
-/// Ten tiers and two for carries, of five numbers of two words each.
-const MOST_CHANNELS: usize = 120;
-
-/// Times that a file may be smaller than its numbers: runs of equal bytes are packed 64 to one.
-const MOST_PACKED: u64 = 80;
 
 /// The name of the layer with the sums.
 const LAYER: &str = "velour sums";
@@ -121,9 +113,9 @@ fn bounded(path: &Path) -> Result<(), String> {
     let headers = exr::MetaData::read_from_unbuffered(file, false).map_err(|error| error.to_string())?.headers;
     let size = |header: &Header| header.layer_size.0.saturating_mul(header.layer_size.1);
     let numbers = |header: &Header| size(header).saturating_mul(header.channels.list.len()) as u64;
-    let room = found.len().saturating_mul(MOST_PACKED) / 4;
+    let room = found.len().saturating_mul(PART_PACKED) / 4;
     let large = |header: &Header| {
-        size(header) > MOST_PIXELS || header.channels.list.len() > MOST_CHANNELS || numbers(header) > room
+        size(header) as u64 > PIXELS || header.channels.list.len() > PART_CHANNELS || numbers(header) > room
     };
     if headers.len() > 2 || headers.iter().any(large) { Err("it is larger than parts are".to_owned()) } else { Ok(()) }
 }

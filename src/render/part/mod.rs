@@ -16,5 +16,5 @@ mod samples;
 pub use error::PartError;
 pub use file::{read, write};
 pub use identity::fingerprint;
-pub use ranges::Ranges;
+pub use ranges::{Ranges, counts};
 pub use samples::{Part, Whole};

@@ -88,6 +88,12 @@ impl Ranges {
     }
 }
 
+/// The fewest and the most numbers of any of these.
+pub fn counts(of: &[Ranges]) -> [u32; 2] {
+    let counts = || of.iter().map(Ranges::count);
+    [counts().min().unwrap_or(0), counts().max().unwrap_or(0)]
+}
+
 impl fmt::Display for Ranges {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, range) in self.iter().enumerate() {

@@ -3,8 +3,10 @@
 use super::super::exact::Sums;
 use super::super::film::means;
 use super::super::image::{About, Image};
+use super::super::tile::Tile;
 use super::error::PartError;
-use super::ranges::Ranges;
+use super::ranges::{Ranges, counts};
+use crate::limits::PIXELS;
 
 /// Samples of a picture, and how to tell whether others are of the same.
 #[derive(Clone, Debug)]
@@ -40,11 +42,8 @@ pub struct Whole {
 impl Whole {
     /// How many tiles it is cut into; nothing for a size that no picture has.
     pub fn tiles(&self) -> Option<usize> {
-        if self.tile_size == 0 || u64::from(self.width) * u64::from(self.height) > 1 << 27 {
-            return None;
-        }
-        let across = |n: u32| n.div_ceil(self.tile_size) as usize;
-        Some(across(self.width) * across(self.height))
+        let known = self.tile_size > 0 && u64::from(self.width) * u64::from(self.height) <= PIXELS;
+        known.then(|| Tile::count_of([self.width, self.height], self.tile_size))
     }
 
     /// The first thing in which two differ, said of the second.
@@ -103,8 +102,7 @@ impl Part {
 
     /// The fewest and the most samples that pixels have had.
     pub fn counts(&self) -> [u32; 2] {
-        let counts = || self.held.iter().map(Ranges::count);
-        [counts().min().unwrap_or(0), counts().max().unwrap_or(0)]
+        counts(&self.held)
     }
 
     /// Says which samples it holds, such as `samples 0..64`.
