@@ -112,8 +112,8 @@ pub const TEXTURE_BYTES: u64 = 16 << 30;
 /// Pixels of a picture.
 pub const PIXELS: u64 = 1 << 27;
 
-/// Channels of the file of a part: ten tiers and two for carries, of five numbers of two words each.
-pub const PART_CHANNELS: usize = 120;
+/// Channels of the file of a part: ten tiers and two for carries, of five numbers of a word each, and of two in the last.
+pub const PART_CHANNELS: usize = 65;
 
 /// Times that the file of a part may be smaller than its numbers: runs of equal bytes are packed 64 to one.
 pub const PART_PACKED: u64 = 80;

@@ -68,6 +68,7 @@ pub mod part;
 mod path;
 mod plan;
 mod points;
+mod pool;
 mod probe;
 mod progress;
 mod radiance;

@@ -2,9 +2,11 @@
 
 use super::error::OutputError;
 use super::image::Image;
-use crate::files::{Destination, Sink};
+use super::settings::Settings;
+use crate::files::{Destination, Room, Sink};
 use crate::math::elementary::pow;
 use exr::prelude as exr;
+use rayon::prelude::*;
 use std::io::Write;
 use std::path::Path;
 
@@ -28,18 +30,62 @@ pub fn check(path: &Path) -> Result<Format, OutputError> {
 
 /// Writes `image` to `path` in the format of its extension.
 pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
+    write_into(image, path, None)
+}
+
+/// The same, into room that is held for it.
+pub fn write_into(image: &Image, path: &Path, room: Option<Room>) -> Result<(), OutputError> {
     let format = check(path)?;
-    write_with(path, |sink| match format {
+    write_with(path, room, |sink| match format {
         Format::Exr => write_exr(image, sink),
         Format::Png => write_png(image, sink),
         Format::Hdr => write_hdr(image, sink),
     })
 }
 
+/// Holds room for what a render of these settings will write to `path`: the picture, or a `part`. Nothing is held for streams, and where
+/// the file system cannot.
+///
+/// # Errors
+/// There is too little room, or the file cannot be written.
+pub fn hold(path: &Path, settings: &Settings, part: bool) -> Result<Room, OutputError> {
+    let (format, destination) = look(path)?;
+    let bytes = most_bytes(format, settings, part);
+    destination.hold(bytes).map_err(|_| OutputError::NoRoom { path: path.to_owned(), bytes })
+}
+
+/// Bytes that a file takes at the most; a part with light of uncommon range may take more.
+fn most_bytes(format: Format, settings: &Settings, part: bool) -> u64 {
+    let (pixels, lines) = (u64::from(settings.width) * u64::from(settings.height), u64::from(settings.height));
+    let channels = if settings.alpha { 4 } else { 3 };
+    let header = 1 << 16;
+    header
+        + match format {
+            // What does not become smaller is kept as it is. A line has an entry in a table and a head.
+            Format::Exr if part => 4 * pixels * (channels + PART_WORDS) + 40 * lines,
+            Format::Exr => 4 * pixels * channels + 20 * lines,
+            // What does not become smaller grows by a few bytes a block of 32 kB.
+            Format::Png => pixels * channels * 1001 / 1000 + lines,
+            // Runs of 128 bytes have a head.
+            Format::Hdr => 4 * pixels * 129 / 128 + 4 * lines,
+        }
+}
+
+/// Words that the sums of a pixel take: five numbers in two tiers, as whatever has more than a few samples has.
+const PART_WORDS: u64 = 10;
+
 /// Writes what `encode` makes to `path`.
-pub(super) fn write_with(path: &Path, encode: impl FnOnce(&mut Sink) -> Result<(), String>) -> Result<(), OutputError> {
+pub(super) fn write_with(
+    path: &Path,
+    room: Option<Room>,
+    encode: impl FnOnce(&mut Sink) -> Result<(), String>,
+) -> Result<(), OutputError> {
     let (_, destination) = look(path)?;
-    let written = destination.write(|sink| encode(sink).map_err(std::io::Error::other));
+    let encode = |sink: &mut Sink| encode(sink).map_err(std::io::Error::other);
+    let written = match room {
+        Some(room) => room.write(encode),
+        None => destination.write(encode),
+    };
     written.map_err(|error| unwritable(path, error.to_string()))
 }
 
@@ -171,8 +217,13 @@ fn write_png(image: &Image, writer: &mut impl Write) -> Result<(), String> {
         [color(pixel[0] * scale), color(pixel[1] * scale), color(pixel[2] * scale), (alpha * 255.0 + 0.5) as u8]
     };
     let channels = image.channels;
-    let bytes: Vec<u8> =
-        image.pixels.chunks_exact(channels).flat_map(|p| encode(p).into_iter().take(channels)).collect();
+    let mut bytes = vec![0; image.pixels.len()];
+    let both = bytes.par_chunks_mut(channels << 12).zip(image.pixels.par_chunks(channels << 12));
+    both.for_each(|(bytes, pixels)| {
+        for (bytes, pixel) in bytes.chunks_exact_mut(channels).zip(pixels.chunks_exact(channels)) {
+            bytes.copy_from_slice(&encode(pixel)[..channels]);
+        }
+    });
     let kind = if channels == 4 { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
     PngEncoder::new(writer).write_image(&bytes, image.width, image.height, kind).map_err(|e| e.to_string())
 }

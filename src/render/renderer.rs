@@ -8,6 +8,7 @@ use super::image::{About, Image};
 use super::part::{Part, PartError, Whole, counts, fingerprint};
 use super::path::Dropped;
 use super::plan::Plan;
+use super::pool::Threads;
 use super::progress::Progress;
 use super::rounds::{Rounds, Task};
 use super::settings::Settings;
@@ -56,7 +57,7 @@ use std::time::Instant;
 /// ```
 pub struct Renderer {
     world: World,
-    pool: rayon::ThreadPool,
+    pool: Threads,
     /// Each thread's memory.
     waves: Vec<Mutex<Option<Wave>>>,
     gathered: Mutex<Gathered>,
@@ -128,7 +129,7 @@ impl Renderer {
         let start = Instant::now();
         settings.check().map_err(RenderError::Settings)?;
         check_camera(&scene.camera)?;
-        let pool = pool(settings)?;
+        let pool = Threads::new(settings.threads)?;
         let stop = Arc::new(Stop::new(Arc::default()));
         stop.begin(settings, start);
         let make = || {
@@ -215,7 +216,8 @@ impl Renderer {
         gathered.seconds_tracing += start.elapsed().as_secs_f64();
         gathered.check()?;
         gathered.check_time()?;
-        Ok(gathered.rounds.look(&self.world.settings, &gathered.film))
+        let settings = &self.world.settings;
+        Ok(self.pool.install(|| gathered.rounds.look(settings, &gathered.film)))
     }
 
     /// Makes up for what a stop has kept from being prepared; false when it does so again.
@@ -285,7 +287,7 @@ impl Renderer {
         let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
         let settings = &self.world.settings;
         let channels = if settings.alpha { 4 } else { 3 };
-        let pixels = all.film.picture(settings, 0..settings.halves(), channels);
+        let pixels = self.pool.install(|| all.film.picture(settings, 0..settings.halves(), channels));
         Image { width: settings.width, height: settings.height, channels, pixels, about: self.about_of(&all) }
     }
 
@@ -319,7 +321,8 @@ impl Renderer {
     pub fn part(&self) -> Part {
         let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
         let settings = &self.world.settings;
-        Part::new(self.whole(), all.rounds.held().to_vec(), all.film.sums(settings, 0..settings.halves()))
+        let sums = self.pool.install(|| all.film.sums(settings, 0..settings.halves()));
+        Part::new(self.whole(), all.rounds.held().to_vec(), sums)
     }
 
     /// Goes on from a part of this picture, whose samples take the place of all there are. Those of it that lie between
@@ -393,7 +396,7 @@ impl Renderer {
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), RenderError> {
         settings.check().map_err(RenderError::Settings)?;
         if settings.threads != self.world.settings.threads {
-            self.pool = pool(settings)?;
+            self.pool = Threads::new(settings.threads)?;
         }
         self.remake(self.world.scene.clone(), settings.clone(), None);
         Ok(())
@@ -448,12 +451,7 @@ fn check_camera(camera: &Camera) -> Result<(), RenderError> {
     camera.flaw().map_or(Ok(()), |flaw| Err(RenderError::Camera(flaw)))
 }
 
-fn pool(settings: &Settings) -> Result<rayon::ThreadPool, RenderError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-    pool.map_err(|e| RenderError::Threads(e.to_string()))
-}
-
-fn empty_waves(pool: &rayon::ThreadPool) -> Vec<Mutex<Option<Wave>>> {
+fn empty_waves(pool: &Threads) -> Vec<Mutex<Option<Wave>>> {
     (0..pool.current_num_threads()).map(|_| Mutex::new(None)).collect()
 }
 
