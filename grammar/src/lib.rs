@@ -22,6 +22,7 @@ mod depth;
 pub mod diagnostic;
 mod explain;
 pub mod files;
+mod format;
 mod lexer;
 pub mod limits;
 mod literal;
@@ -41,6 +42,7 @@ mod tree;
 mod osl;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use format::{FormatError, format, format_bytes};
 pub use render::{Format, json};
 pub use source::{Location, Sources};
 pub use span::Span;
