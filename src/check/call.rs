@@ -16,6 +16,7 @@ impl Checker<'_> {
     pub(super) fn check_call(&mut self, name: &Ident, args: &[ast::Expr], expected: Option<&Type>, span: Span) -> Expr {
         if let Some(Symbol::Struct(structure)) = self.lookup(&name.name) {
             let structure = structure.clone();
+            self.note_struct(name.span, &structure);
             let ty = Type { element: crate::lang::types::Element::Struct(structure.clone()), length: Length::Single };
             if args.len() < structure.fields.len() {
                 let (given, wanted) = (args.len(), structure.fields.len());
@@ -28,6 +29,12 @@ impl Checker<'_> {
             }
             let list = ast::Expr { kind: ast::ExprKind::InitList(args.to_vec()), span };
             return self.check_initial(&list, &mut ty.clone());
+        }
+        // Wrong arguments leave it open which one is meant.
+        if self.notes.is_some()
+            && let Some(candidate) = self.candidates(&name.name).first()
+        {
+            self.note(name.span, &name.name, candidate.meaning(), false);
         }
         let list = |arg: &ast::Expr| matches!(arg.kind, ast::ExprKind::InitList(_));
         let values: Vec<Expr> =
@@ -56,7 +63,11 @@ impl Checker<'_> {
             self.unknown_function(name);
             return Expr::error(span);
         }
-        match self.best(&candidates, (args, &values), expected, name) {
+        let best = self.best(&candidates, (args, &values), expected, name);
+        if let Some(best) = &best {
+            self.note(name.span, &name.name, best.meaning(), false);
+        }
+        match best {
             Some(Candidate::User(id)) => self.call_user(id, args, values, span),
             Some(Candidate::Builtin(name, signature)) => self.call_builtin(name, signature, args, values, span),
             Some(Candidate::Closure(id)) => self.call_closure(id, values, span),

@@ -39,7 +39,7 @@ pub(super) struct Frame {
     pub base: usize,
     /// The steps from there to what it holds.
     pub steps: usize,
-    /// The columns, in the text and as written, of what follows the bracket on its line.
+    /// The columns, in the text and as written, of what follows the bracket, or the `=` of a statement, on its line.
     pub align: Option<(usize, usize)>,
     /// The next token begins a statement, or an element of a list.
     pub fresh: bool,
@@ -87,6 +87,11 @@ impl Frame {
     /// Does it hold statements?
     pub(super) fn is_block(&self) -> bool {
         matches!(self.kind, Kind::File | Kind::Block)
+    }
+
+    /// Where a line is written that begins in the text in the column of what it goes on.
+    pub(super) fn aligned(&self, column: usize) -> Option<usize> {
+        self.align.filter(|(there, _)| *there == column).map(|(_, written)| written)
     }
 
     /// The indentation of what it holds.

@@ -149,7 +149,8 @@ impl<'t> Layout<'t> {
         self.empty = false;
         let column = self.lines.column();
         let frame = self.frame();
-        if frame.align.is_none() && !new_line && before.is_some_and(|b| opens(b.kind)) && !frame.is_block() {
+        let aligning = |b: Before<'_>| if frame.is_block() { assigns(&b) } else { opens(b.kind) && frame.align.is_none() };
+        if !new_line && before.is_some_and(aligning) {
             frame.align = Some((part.column, column));
         }
         self.lines.push(part.text);
@@ -185,11 +186,11 @@ impl<'t> Layout<'t> {
                 true => frame.statement(kind == Token::BraceOpen),
                 false if kind == Token::BraceOpen => frame.start,
                 false if frame.kind == Kind::File && names => frame.start,
-                false => frame.start + STEP,
+                false => frame.aligned(part.column).unwrap_or(frame.start + STEP),
             };
         }
-        match frame.align {
-            Some((column, written)) if column == part.column => written,
+        match frame.aligned(part.column) {
+            Some(written) => written,
             _ if !frame.fresh && frame.first => frame.start + STEP,
             _ => frame.inner(),
         }
@@ -208,6 +209,9 @@ impl<'t> Layout<'t> {
         };
         if fresh {
             (frame.start, frame.first) = (own, new_line);
+        }
+        if fresh && frame.is_block() {
+            frame.align = None;
         }
         match kind {
             Token::BraceOpen | Token::ParenOpen | Token::BracketOpen | Token::MetaOpen => {
@@ -297,6 +301,11 @@ impl<'t> Layout<'t> {
 /// Does a bracket open with this token?
 fn opens(kind: Token) -> bool {
     matches!(kind, Token::BraceOpen | Token::ParenOpen | Token::BracketOpen | Token::MetaOpen)
+}
+
+/// Is a token followed by the value of a statement?
+fn assigns(before: &Before<'_>) -> bool {
+    before.kind == Token::Assign || before.text == "return"
 }
 
 /// Does a brace after this token hold values?
