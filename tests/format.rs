@@ -76,8 +76,13 @@ fn shaders_stay_the_same_and_are_laid_out_once() {
             }
         }
     }
-    let shaders = |list: &[&PathBuf]| list.iter().filter(|path| path.extension().is_some_and(|end| end == "osl")).count();
+    let shaders =
+        |list: &[&PathBuf]| list.iter().filter(|path| path.extension().is_some_and(|end| end == "osl")).count();
     println!("{} shaders, {} of them wrong", shaders(&all.iter().collect::<Vec<_>>()), shaders(&wrong));
-    println!("{} files: {done} laid out, {changed} changed by it; {} wrong; layout counts: {counted:?}", all.len(), wrong.len());
+    println!(
+        "{} files: {done} laid out, {changed} changed by it; {} wrong; layout counts: {counted:?}",
+        all.len(),
+        wrong.len()
+    );
     assert!(done >= own, "{wrong:?} {counted:?}");
 }

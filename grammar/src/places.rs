@@ -147,7 +147,8 @@ impl Sources {
         if span == Span::NONE {
             return None;
         }
-        (span.first..=span.last).find(|index| self.token(*index).is_some_and(|t| !t.aside && self.spelling(t.place) == name))
+        (span.first..=span.last)
+            .find(|index| self.token(*index).is_some_and(|t| !t.aside && self.spelling(t.place) == name))
     }
 
     /// All calls of macros.

@@ -251,10 +251,8 @@ impl Checker<'_> {
 
     /// Warns of a literal name that stands for no noise, which is an error when it runs.
     fn warn_of_noise(&mut self, function: &str, name: &str, span: Span) {
-        const NAMES: &[&str] =
-            &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash", "gabor"];
         let known: Vec<&str> =
-            NAMES.iter().copied().filter(|n| function == "noise" || !n.contains("simplex")).collect();
+            NOISES.iter().copied().filter(|n| function == "noise" || !n.contains("simplex")).collect();
         if !known.contains(&name) {
             let diagnostic =
                 Diagnostic::warning("W0511", span, format!("`{function}` has no \"{name}\"; it gives 0 and an error"));
@@ -381,8 +379,12 @@ fn is_place(expr: &ast::Expr) -> bool {
     }
 }
 
+/// The kinds of noise that have names.
+pub(crate) const NOISES: &[&str] =
+    &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash", "gabor"];
+
 /// The options of `texture` and `environment`.
-const TEXTURE_OPTIONS: &[&str] = &[
+pub(crate) const TEXTURE_OPTIONS: &[&str] = &[
     "alpha",
     "blur",
     "colorspace",

@@ -27,6 +27,8 @@ mod statement;
 pub mod typed;
 mod unused;
 
+#[cfg(feature = "lsp")]
+pub(crate) use call::{NOISES, TEXTURE_OPTIONS};
 pub use unused::unused;
 
 use crate::lang::closures::ClosureTable;

@@ -9,6 +9,7 @@ mod fmt;
 mod info;
 mod info_file;
 mod keep;
+mod lsp;
 mod merge;
 mod names;
 mod new;

@@ -149,7 +149,8 @@ impl<'t> Layout<'t> {
         self.empty = false;
         let column = self.lines.column();
         let frame = self.frame();
-        let aligning = |b: Before<'_>| if frame.is_block() { assigns(&b) } else { opens(b.kind) && frame.align.is_none() };
+        let aligning =
+            |b: Before<'_>| if frame.is_block() { assigns(&b) } else { opens(b.kind) && frame.align.is_none() };
         if !new_line && before.is_some_and(aligning) {
             frame.align = Some((part.column, column));
         }
@@ -285,11 +286,10 @@ impl<'t> Layout<'t> {
         if kind == Token::BraceClose && frame.is_block() && closed == Kind::Block {
             frame.end_statement(next);
         }
-        if condition && let Some((head, indent)) = frame.head.take() {
-            if head != Head::DoEnd {
-                frame.waiting.push((head, indent));
-                frame.fresh = true;
-            }
+        let head = if condition { frame.head.take() } else { None };
+        if let Some((head, indent)) = head.filter(|(head, _)| *head != Head::DoEnd) {
+            frame.waiting.push((head, indent));
+            frame.fresh = true;
         }
         if let Some(before) = &mut self.state.before {
             (before.cast, before.condition) = (cast, condition);

@@ -34,7 +34,9 @@ impl fmt::Display for FormatError {
         f.write_str(match self {
             FormatError::Wrong(..) => "the text is wrong",
             FormatError::Mixed => "the text is partly UTF-8 and partly Latin-1",
-            FormatError::Counted => "its macros count lines or look at spaces, so that another layout would be another program",
+            FormatError::Counted => {
+                "its macros count lines or look at spaces, so that another layout would be another program"
+            }
         })
     }
 }

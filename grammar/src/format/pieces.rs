@@ -49,7 +49,18 @@ pub(super) fn advanced(column: usize, text: &str) -> usize {
 /// arguments count.
 pub(super) fn parts(text: &str) -> (Vec<Part<'_>>, HashSet<&str>) {
     let tokens = scan(text, 0);
-    let mut cutter = Cutter { text, at: 0, ended: 0, measured: 0, column: 0, newlines: 0, space: false, line: 0, places: Vec::new(), out: Vec::new() };
+    let mut cutter = Cutter {
+        text,
+        at: 0,
+        ended: 0,
+        measured: 0,
+        column: 0,
+        newlines: 0,
+        space: false,
+        line: 0,
+        places: Vec::new(),
+        out: Vec::new(),
+    };
     let (mut i, mut quoting) = (0, HashSet::new());
     while let Some(token) = tokens.get(i) {
         let start = token.place.start as usize;
@@ -114,8 +125,8 @@ fn end_of_line(text: &str, from: usize, most: usize) -> usize {
 
 /// The length of a comment that a text begins with.
 fn comment_length(rest: &str) -> Option<usize> {
-    if rest.starts_with("/*") {
-        return Some(rest[2..].find("*/").map_or(rest.len(), |end| end + 4));
+    if let Some(inner) = rest.strip_prefix("/*") {
+        return Some(inner.find("*/").map_or(rest.len(), |end| end + 4));
     }
     if !rest.starts_with("//") {
         return None;

@@ -22,9 +22,8 @@ pub(super) struct Before<'t> {
 }
 
 /// Words that name types.
-const TYPES: &[&str] = &[
-    "int", "float", "color", "point", "vector", "normal", "matrix", "string", "void", "closure", "struct", "output",
-];
+const TYPES: &[&str] =
+    &["int", "float", "color", "point", "vector", "normal", "matrix", "string", "void", "closure", "struct", "output"];
 
 /// Words that begin statements.
 const STATEMENTS: &[&str] = &["if", "for", "while", "do", "else", "return", "break", "continue"];
@@ -101,5 +100,8 @@ fn wanted(before: &Before<'_>, next: Kind, prefix: bool, closing: bool) -> Optio
 fn stay_apart(before: &str, next: &str) -> bool {
     let joined = [before, next].concat();
     let mut lexer = Kind::lexer(&joined);
-    lexer.next().is_some() && lexer.span().end == before.len() && lexer.next().is_some() && lexer.span().start == before.len()
+    lexer.next().is_some()
+        && lexer.span().end == before.len()
+        && lexer.next().is_some()
+        && lexer.span().start == before.len()
 }
