@@ -107,6 +107,16 @@ impl Study {
         if self.in_comment(offset) {
             return Vec::new();
         }
+        if self.is_whole() || self.string_at(offset).is_some() {
+            return self.offered(offset, earlier);
+        }
+        // A statement that is being written has no end yet, and may take all around it with it.
+        let end = self.name_at(offset).map_or(offset, |token| token.end);
+        let mended = [&self.text[..end], ";", &self.text[end..]].concat();
+        Study::new(&self.compiler, &self.name, &mended).offered(offset, earlier)
+    }
+
+    fn offered(&self, offset: usize, earlier: Option<&Study>) -> Vec<Item> {
         if let Some(string) = self.string_at(offset) {
             let (start, end) = (string.start + 1, string.end);
             let text = self.text_at(string);
@@ -140,8 +150,9 @@ impl Study {
         }
         self.names(&mut out);
         if let Some(earlier) = earlier.filter(|_| !self.is_whole()) {
-            for variable in earlier.notes.variables.iter().filter(|variable| variable.global.is_none()) {
-                out.insert(variable.name.to_string(), (ItemKind::Variable, variable.ty.to_string(), String::new()));
+            for (name, var) in earlier.own_variables() {
+                let ty = earlier.notes.variables.get(var).map_or(String::new(), |variable| variable.ty.to_string());
+                out.insert(name.to_owned(), (ItemKind::Variable, ty, String::new()));
             }
         }
         for (name, var) in self.visible_variables(range.start) {

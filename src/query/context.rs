@@ -4,7 +4,7 @@ use super::study::Study;
 use crate::check::notes::Meaning;
 use crate::lang::types::{Base, Type};
 use std::collections::HashMap;
-use velour_grammar::places::{RawKind, RawToken};
+use velour_grammar::places::{MAIN_FILE, RawKind, RawToken, TextRange};
 
 /// The call that a place is an argument of.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -79,22 +79,31 @@ impl Study {
         None
     }
 
-    /// For each variable of the text its name, number and the bytes in which it may be used.
-    pub(super) fn visible_variables(&self, offset: usize) -> Vec<(&str, usize)> {
-        let pairs = self.pairs();
-        let mut out: Vec<(&str, usize)> = Vec::new();
+    /// Name and number of each variable that the text itself declares.
+    pub(super) fn own_variables(&self) -> Vec<(&str, usize)> {
+        self.declared_variables().into_iter().map(|(name, var, _)| (name, var)).collect()
+    }
+
+    fn declared_variables(&self) -> Vec<(&str, usize, TextRange)> {
+        let mut out = Vec::new();
         for used in self.notes.uses.iter().filter(|used| used.declares) {
             let Meaning::Variable(var) = used.meaning else { continue };
             let token = self.checked.sources.name_token(used.span, &used.name);
-            let Some(place) = token.and_then(|token| self.position(token)) else { continue };
-            let inside = place.file == velour_grammar::places::MAIN_FILE
-                && (place.end as usize) < offset
-                && self.scope_end(place.start as usize, &pairs).is_none_or(|end| offset <= end);
-            if inside {
-                out.push((used.name.as_str(), var.0 as usize));
-            }
+            let place = token.and_then(|token| self.position(token)).filter(|place| place.file == MAIN_FILE);
+            out.extend(place.map(|place| (used.name.as_str(), var.0 as usize, place)));
         }
         out
+    }
+
+    /// Name and number of each variable of the text that may be used at a byte, the innermost last.
+    pub(super) fn visible_variables(&self, offset: usize) -> Vec<(&str, usize)> {
+        let pairs = self.pairs();
+        let mut all = self.declared_variables();
+        all.retain(|(_, _, place)| {
+            let end = || self.scope_end(place.start as usize, &pairs);
+            (place.end as usize) < offset && end().is_none_or(|end| offset <= end)
+        });
+        all.into_iter().map(|(name, var, _)| (name, var)).collect()
     }
 
     /// The innermost variable of a name that may be used at a byte.

@@ -103,7 +103,7 @@ impl Study {
     }
 
     /// Does a function come with velour?
-    fn is_own(&self, function: usize) -> bool {
+    pub(super) fn is_own(&self, function: usize) -> bool {
         let place = self.declared(function);
         place.is_some_and(|place| self.comes_with_velour(self.checked.sources.name_of(place.file)))
     }

@@ -80,7 +80,8 @@ impl Study {
     /// Nothing here can be renamed, or not to this.
     pub fn rename(&self, found: &Found, new: &str) -> Result<Vec<Range<usize>>, RenameError> {
         let ranges = self.renamable(found)?;
-        let builtin = matches!(self.by_name(new), Some(Meaning::Builtin(_) | Meaning::Closure(_)));
+        let global = self.notes.variables.iter().any(|variable| variable.global.is_some() && variable.name == *new);
+        let builtin = global || matches!(self.by_name(new), Some(Meaning::Builtin(_) | Meaning::Closure(_)));
         if !is_free_name(new) {
             return Err(RenameError::NoName(new.to_owned()));
         }

@@ -79,17 +79,18 @@ impl Study {
 
     /// All that a name may call.
     pub(super) fn overloads(&self, name: &str) -> Vec<Overload> {
-        let mut out = Vec::new();
         let doc = sentence(name).unwrap_or_default();
-        for (at, function) in self.notes.functions.iter().enumerate().rev().filter(|(_, f)| f.name == name) {
-            let doc = self.comment_of(at).unwrap_or_else(|| doc.to_owned());
+        let (mut out, mut header) = (Vec::new(), Vec::new());
+        for (at, function) in self.notes.functions.iter().enumerate().filter(|(_, f)| f.name == name) {
+            let own = self.is_own(at);
+            let doc = self.comment_of(at).filter(|_| !own).unwrap_or_else(|| doc.to_owned());
             let mut maker = Maker::new(format!("{} {name}", function.returns), &doc);
             for (i, (ty, output)) in function.formals.iter().enumerate() {
                 let name = function.names.get(i).map_or("", |name| name.as_str());
                 let output = if *output { "output " } else { "" };
                 maker = maker.parameter(format!("{output}{ty} {name}").trim_end(), "");
             }
-            out.push(maker.finish());
+            if own { header.push(maker.finish()) } else { out.push(maker.finish()) }
         }
         for signature in builtins::signatures(name).unwrap_or_default() {
             let mut maker = Maker::new(format!("{} {name}", signature.returns), doc);
@@ -124,6 +125,8 @@ impl Study {
             }
             out.push(maker.finish());
         }
+        // What a header adds to a builtin comes after it.
+        out.extend(header);
         out
     }
 }

@@ -1,0 +1,7 @@
+//! `velour lsp`, as an editor talks to it.
+
+mod client;
+mod edits;
+mod life;
+mod names;
+mod writing;
