@@ -1,6 +1,7 @@
 //! `velour lsp`, as an editor talks to it.
 
 mod client;
+mod colors;
 mod edits;
 mod life;
 mod names;
