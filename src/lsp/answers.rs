@@ -6,8 +6,8 @@ use super::{look, uri};
 use crate::query::{Found, Study};
 use lsp_server::ErrorCode;
 use lsp_types::{
-    CompletionParams, DocumentFormattingParams, DocumentHighlightParams, DocumentSymbolParams, GotoDefinitionParams,
-    HoverParams, ReferenceParams, RenameParams, SignatureHelpParams, TextDocumentPositionParams,
+    DocumentFormattingParams, DocumentHighlightParams, DocumentSymbolParams, GotoDefinitionParams, HoverParams,
+    ReferenceParams, RenameParams, TextDocumentPositionParams,
 };
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -50,12 +50,12 @@ pub(super) fn answer(documents: &mut Documents, headers: Option<&Path>, method: 
             at(documents, &params.text_document_position, |place| rename(place, &params.new_name))
         }
         "textDocument/completion" => {
-            let params: CompletionParams = read(params)?;
-            at(documents, &params.text_document_position, completion)
+            let params: TextDocumentPositionParams = read(params)?;
+            at(documents, &params, completion)
         }
         "textDocument/signatureHelp" => {
-            let params: SignatureHelpParams = read(params)?;
-            at(documents, &params.text_document_position_params, |place| {
+            let params: TextDocumentPositionParams = read(params)?;
+            at(documents, &params, |place| {
                 Ok(place.study.call_help(place.offset).map_or(Value::Null, |help| look::call(&help)))
             })
         }

@@ -45,7 +45,8 @@ impl Model {
 
     /// The next place between characters that is not between the two halves of a line's end.
     fn whole(&self, mut at: usize) -> usize {
-        let inside = |at: usize| (0xdc00..0xe000).contains(&self.0[at]) || at > 0 && self.0[at] == 10 && self.0[at - 1] == 13;
+        let inside =
+            |at: usize| (0xdc00..0xe000).contains(&self.0[at]) || at > 0 && self.0[at] == 10 && self.0[at - 1] == 13;
         while at < self.0.len() && inside(at) {
             at += 1;
         }
@@ -59,9 +60,35 @@ impl Model {
     /// A random change, as it is sent.
     fn change(&mut self, random: &mut Random) -> Value {
         const PIECES: &[&str] = &[
-            "x", " ", "\n", "\r\n", "\r", "\t", "\u{1f9f5}", "é", "漢", "\"", "/*", "*/", "//", "{", "}", "(", ")", ";",
-            "float a = 1;\n", "Ci = sheen(diffuse(N), N, color(1), 0.5);\r\n", "#define M(x) #x\n", "#if 1\n", "#endif\n",
-            "surface s(float r = 0.5) {\n", "color \u{1f9f5} c;", "[[ string help = \"é\u{1f9f5}\" ]]", "a.b", "\\\n", "\u{feff}",
+            "x",
+            " ",
+            "\n",
+            "\r\n",
+            "\r",
+            "\t",
+            "\u{1f9f5}",
+            "é",
+            "漢",
+            "\"",
+            "/*",
+            "*/",
+            "//",
+            "{",
+            "}",
+            "(",
+            ")",
+            ";",
+            "float a = 1;\n",
+            "Ci = sheen(diffuse(N), N, color(1), 0.5);\r\n",
+            "#define M(x) #x\n",
+            "#if 1\n",
+            "#endif\n",
+            "surface s(float r = 0.5) {\n",
+            "color \u{1f9f5} c;",
+            "[[ string help = \"é\u{1f9f5}\" ]]",
+            "a.b",
+            "\\\n",
+            "\u{feff}",
         ];
         let from = self.place(random);
         // Most deletions are short, some cross many lines.

@@ -46,7 +46,9 @@ fn broken_messages_are_answered_and_the_talk_goes_on() {
     assert_eq!(client.at("hover", 4_000_000_000, 7)["result"], Value::Null);
     client.open("untitled:Untitled-1", "surface s() { Ci = diffuse(N); }");
     let hover = json!({ "textDocument": { "uri": "untitled:Untitled-1" }, "position": { "line": 0, "character": 21 } });
-    assert!(client.ask("textDocument/hover", hover)["result"]["contents"]["value"].as_str().unwrap().contains("Lambert"));
+    assert!(
+        client.ask("textDocument/hover", hover)["result"]["contents"]["value"].as_str().unwrap().contains("Lambert")
+    );
     assert_eq!(client.end(), 0);
 }
 
@@ -70,7 +72,8 @@ fn what_means_something_is_checked_beside_a_syntax_error() {
 fn what_is_odd_is_shown_more_softly() {
     let mut client = Client::new();
     let found = client.open(URI, "surface s(float a = 0)\n{\n    float b = 1;\n    float c;\n    Ci = c * emission();\n    int d[2] = {1, 2};\n    d[7] = 0;\n}\n");
-    let told: Vec<String> = found.iter().map(|d| format!("{} {} {}", d["severity"], d["code"].as_str().unwrap(), d["tags"])).collect();
+    let told: Vec<String> =
+        found.iter().map(|d| format!("{} {} {}", d["severity"], d["code"].as_str().unwrap(), d["tags"])).collect();
     assert_eq!(told, ["2 W0503 null", "4 W0507 [1]", "4 W0507 [1]", "4 W0508 [1]", "4 W0507 [1]"]);
     assert_eq!(client.end(), 0);
 }
@@ -96,13 +99,17 @@ fn included_texts_are_those_that_are_open() {
     assert_eq!(codes(&client.diagnostics(&shader)), ["E0405 1:50-1:56"]);
     let place = json!({ "textDocument": { "uri": shader }, "position": { "line": 1, "character": 38 } });
     let there = client.ask("textDocument/definition", place)["result"].clone();
-    assert_eq!((there["uri"].as_str(), crate::client::shown(&there["range"])), (Some(header.as_str()), "0:6-0:11".into()));
+    assert_eq!(
+        (there["uri"].as_str(), crate::client::shown(&there["range"])),
+        (Some(header.as_str()), "0:6-0:11".into())
+    );
     assert_eq!(client.end(), 0);
 }
 
 /// A shader of so many lines.
 fn long(lines: usize) -> String {
-    let mut text = String::from("// Many lines.\nsurface knit(float scale = 1, color tint = 1)\n{\n    float sum = 0;\n");
+    let mut text =
+        String::from("// Many lines.\nsurface knit(float scale = 1, color tint = 1)\n{\n    float sum = 0;\n");
     for line in 0..lines - 6 {
         let _ = match line % 4 {
             0 => writeln!(text, "    float a{line} = noise(P * scale + {line});"),

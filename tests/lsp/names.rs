@@ -80,7 +80,10 @@ fn definitions_are_where_names_are_declared() {
     let path = there["uri"].as_str().unwrap().strip_prefix("file://").unwrap().to_owned();
     let text = std::fs::read_to_string(&path).unwrap();
     let found = text.lines().nth(there["range"]["start"]["line"].as_u64().unwrap() as usize).unwrap();
-    assert!(path.ends_with("/stdosl.osl") && found.starts_with("float  radians") || found.starts_with("float radians"), "{found}");
+    assert!(
+        path.ends_with("/stdosl.osl") && found.starts_with("float  radians") || found.starts_with("float radians"),
+        "{found}"
+    );
     assert!(client.open(there["uri"].as_str().unwrap(), &text).is_empty());
     let (line, column) = place("oslutil", 1);
     let there = client.at("definition", line, column)["result"].clone();
@@ -133,7 +136,9 @@ fn a_new_name_goes_to_every_place_or_to_none() {
     assert_eq!(renamed("cloth", 1, "felt").unwrap(), [range("cloth", 1)]);
     assert_eq!(renamed("made", 2, "done").unwrap().len(), 2);
     // A name of an inner scope would catch the outer one, or the other way around.
-    for (word, nth, new) in [("amount", 2, "result"), ("amount", 2, "x"), ("yarn", 1, "i"), ("result", 1, "u"), ("twist", 1, "tint")] {
+    for (word, nth, new) in
+        [("amount", 2, "result"), ("amount", 2, "x"), ("yarn", 1, "i"), ("result", 1, "u"), ("twist", 1, "tint")]
+    {
         assert!(renamed(word, nth, new).unwrap_err().contains("means something else"), "{word} as {new}");
     }
     for new in ["diffuse", "noise"] {
@@ -164,7 +169,11 @@ fn a_word_is_explained() {
         answer["result"]["contents"]["value"].as_str().map(str::to_owned).unwrap_or_default()
     };
     let cases = [
-        ("amount", 3, "```osl\nfloat amount\n```\n\nparameter of the shader `cloth`, `0.5` by default\n\nhow much of it"),
+        (
+            "amount",
+            3,
+            "```osl\nfloat amount\n```\n\nparameter of the shader `cloth`, `0.5` by default\n\nhow much of it",
+        ),
         ("twice(amount", 1, "```osl\nfloat twice(float x)\n```\n\nDoubles a number.\n\u{1f9f5} twice"),
         ("Yarn yarn", 1, "```osl\nstruct Yarn {\n    float twist;\n    color tint;\n};\n```"),
         ("tint)", 1, "```osl\ncolor tint\n```\n\nfield of `struct Yarn`"),
@@ -192,7 +201,11 @@ fn what_a_text_declares_is_listed() {
     let mut client = client();
     let list = client.at("documentSymbol", 0, 0)["result"].clone();
     let names = |list: &Value| -> Vec<String> {
-        list.as_array().unwrap().iter().map(|s| format!("{} {}", s["name"].as_str().unwrap(), shown(&s["range"]))).collect()
+        list.as_array()
+            .unwrap()
+            .iter()
+            .map(|s| format!("{} {}", s["name"].as_str().unwrap(), shown(&s["range"])))
+            .collect()
     };
     let wanted = [
         "GAIN 2:8-2:12",

@@ -33,7 +33,9 @@ fn names_are_offered_where_they_may_stand() {
     let text = "struct Yarn { float twist; };\nfloat near(float inner) { return inner; }\nsurface s(float rough = 0.1) {\n    float above = 1;\n    { float hidden = 2; }\n    for (int i = 0; i < 3; ++i) { float loop = i; }\n    Ci = ro¦\n    float below = 3;\n}\n";
     let found = items(&mut client, text);
     let found = labels(&found);
-    for name in ["rough", "above", "near", "Yarn", "diffuse", "sheen", "noise", "N", "u", "M_PI", "float", "return", "radians"] {
+    for name in
+        ["rough", "above", "near", "Yarn", "diffuse", "sheen", "noise", "N", "u", "M_PI", "float", "return", "radians"]
+    {
         assert!(found.contains(&name), "{name}");
     }
     for name in ["hidden", "inner", "loop", "i", "below", "twist"] {
@@ -42,11 +44,20 @@ fn names_are_offered_where_they_may_stand() {
     // Over what has been written of it, with an item's type and meaning.
     let found = items(&mut client, "surface s(float rough = 0.1) { Ci = rou¦ }");
     let rough = found.iter().find(|item| item["label"] == "rough").unwrap();
-    assert_eq!((rough["detail"].as_str(), crate::client::shown(&rough["textEdit"]["range"])), (Some("float"), "0:36-0:39".into()));
+    assert_eq!(
+        (rough["detail"].as_str(), crate::client::shown(&rough["textEdit"]["range"])),
+        (Some("float"), "0:36-0:39".into())
+    );
     let inside = items(&mut client, "float f(float inner) { for (int i = 0; i < 3; ++i) { float x = ¦; } }");
     assert!(["inner", "i", "f"].iter().all(|name| labels(&inside).contains(name)));
-    assert_eq!(labels(&items(&mut client, "struct A { float x; color c; };\nsurface s() { A a[2]; a[1].¦ }")), ["c", "x"]);
-    assert_eq!(labels(&items(&mut client, "struct A { float x; color c; };\nsurface s() { A a; a.c.¦; }")), ["b", "g", "r"]);
+    assert_eq!(
+        labels(&items(&mut client, "struct A { float x; color c; };\nsurface s() { A a[2]; a[1].¦ }")),
+        ["c", "x"]
+    );
+    assert_eq!(
+        labels(&items(&mut client, "struct A { float x; color c; };\nsurface s() { A a; a.c.¦; }")),
+        ["b", "g", "r"]
+    );
     assert_eq!(labels(&items(&mut client, "surface s() { P.¦ = 0; }")), ["x", "y", "z"]);
     assert!(items(&mut client, "surface s() { // no¦\n}").is_empty());
     assert!(items(&mut client, "/* no¦ */ surface s() { }").is_empty());
@@ -100,11 +111,23 @@ fn the_parameters_of_a_call_are_shown() {
     };
     let own = "float f(float first, output color second) { return first; }\nsurface s() { ";
     assert_eq!(help(&format!("{own} f(¦")), "float f(float first, output color second) | float first");
-    assert_eq!(help(&format!("{own} f(sin(1, 2), ¦) }}")), "float f(float first, output color second) | output color second");
+    assert_eq!(
+        help(&format!("{own} f(sin(1, 2), ¦) }}")),
+        "float f(float first, output color second) | output color second"
+    );
     assert_eq!(help("surface s() { float x = smoothstep(0, 1, ¦); }"), "float smoothstep(float, float, float) | float");
-    assert_eq!(help("surface s() { Ci = oren_nayar(N, ¦"), "closure color oren_nayar(normal N, float sigma, [\"label\", string]) | float sigma");
-    assert_eq!(help("struct A { float x; color c; };\nsurface s() { A a = A(1, ¦); }"), "struct A(float x, color c) | color c");
-    assert_eq!(help("surface s() { color c = texture(\"a\", u, v, \"wrap\", ¦); }"), "float texture(string, float, float, [\"name\", value]…) | [\"name\", value]…");
+    assert_eq!(
+        help("surface s() { Ci = oren_nayar(N, ¦"),
+        "closure color oren_nayar(normal N, float sigma, [\"label\", string]) | float sigma"
+    );
+    assert_eq!(
+        help("struct A { float x; color c; };\nsurface s() { A a = A(1, ¦); }"),
+        "struct A(float x, color c) | color c"
+    );
+    assert_eq!(
+        help("surface s() { color c = texture(\"a\", u, v, \"wrap\", ¦); }"),
+        "float texture(string, float, float, [\"name\", value]…) | [\"name\", value]…"
+    );
     for text in ["surface s() { f(1); ¦ }", "surface s() { (1 + ¦) }", "¦", "surface s() { // sin(¦\n}"] {
         assert_eq!(help(text), "nothing", "{text}");
     }
@@ -119,7 +142,15 @@ fn a_text_is_laid_out() {
         let options = json!({ "options": { "tabSize": 8, "insertSpaces": false } });
         let edits = client.at_with("formatting", 0, 0, options)["result"].clone();
         if edits.is_array() && !edits.as_array().unwrap().is_empty() {
-            client.change(URI, edits.as_array().unwrap().iter().map(|e| json!({ "range": e["range"], "text": e["newText"] })).collect());
+            client.change(
+                URI,
+                edits
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .map(|e| json!({ "range": e["range"], "text": e["newText"] }))
+                    .collect(),
+            );
         }
         let text = client.ask("velour/text", json!({ "textDocument": { "uri": URI } }));
         (edits, text["result"].as_str().unwrap().to_owned())
