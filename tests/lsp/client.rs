@@ -12,8 +12,10 @@ pub struct Client {
     process: Child,
     input: Option<ChildStdin>,
     output: BufReader<ChildStdout>,
-    /// The number of the last request, and of the last version.
+    /// The number of the last request or change.
     count: i64,
+    /// The number of the last change.
+    version: i64,
     /// What the server has said besides answers.
     pub told: Vec<Value>,
 }
@@ -38,7 +40,7 @@ impl Client {
             .spawn()
             .unwrap();
         let (input, output) = (process.stdin.take(), BufReader::new(process.stdout.take().unwrap()));
-        Client { process, input, output, count: 0, told: Vec::new() }
+        Client { process, input, output, count: 0, version: 0, told: Vec::new() }
     }
 
     /// Sends bytes as they are.
@@ -99,6 +101,7 @@ impl Client {
     /// Changes a text, without waiting.
     pub fn change(&mut self, uri: &str, changes: Value) {
         self.count += 1;
+        self.version = self.count;
         let document = json!({ "uri": uri, "version": self.count });
         self.notify("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
     }
@@ -111,6 +114,26 @@ impl Client {
                 return message["params"]["diagnostics"].as_array().unwrap().clone();
             }
             self.told.push(message);
+        }
+    }
+
+    /// Reads up to what is wrong with the version of a text that was sent last.
+    pub fn last_diagnostics(&mut self, uri: &str) -> Value {
+        let told = std::mem::take(&mut self.told);
+        let version = self.version;
+        let wanted = |m: &Value| {
+            m["method"] == "textDocument/publishDiagnostics"
+                && m["params"]["uri"] == uri
+                && m["params"]["version"] == version
+        };
+        if let Some(message) = told.into_iter().rev().find(wanted) {
+            return message["params"]["diagnostics"].clone();
+        }
+        loop {
+            let message = self.read();
+            if wanted(&message) {
+                return message["params"]["diagnostics"].clone();
+            }
         }
     }
 
