@@ -127,6 +127,15 @@ impl Sources {
         self.token(token).filter(|token| !token.aside).map(|token| range(token.place))
     }
 
+    /// The first expanded token that ends where a place ends, for people: what a macro made ends with its call.
+    pub fn token_at(&self, place: TextRange) -> Option<u32> {
+        let ends = |token: u32| {
+            let written = self.written(Span { first: token, last: token });
+            written.is_some_and(|there| there.file == place.file && there.end == place.end)
+        };
+        (0..self.token_count()).find(|token| self.token(*token).is_some_and(|token| !token.aside) && ends(*token))
+    }
+
     /// Did a macro make an expanded token?
     pub fn is_expanded(&self, token: u32) -> bool {
         self.token(token).is_some_and(|token| token.call != NO_CALL)

@@ -8,6 +8,7 @@ use crate::compile::CompileError;
 use crate::lang::builtins;
 use crate::lang::closures::ClosureTable;
 use crate::lang::describe::{closure_head, closure_text, function_text, signature_text};
+use crate::lang::sentences::sentence;
 use crate::scene::{find_shader, nearest};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -161,6 +162,9 @@ fn one(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
     }
     for function in header.iter().filter(|f| f.name.name == name) {
         out += &format!("{}\n", function_text(function));
+    }
+    if let Some(sentence) = sentence(name) {
+        out += &format!("    {sentence}\n");
     }
     out
 }

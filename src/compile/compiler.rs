@@ -3,14 +3,11 @@
 use super::error::CompileError;
 use super::recipe::Recipe;
 use super::shader::Shader;
-use crate::check::notes::Notes;
-use crate::check::{check, check_noting};
+use crate::check::check;
 use crate::closure::Library;
 use crate::limits::SHADER_BYTES;
-use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
-use velour_grammar::places::MAIN_FILE;
 use velour_grammar::{Diagnostics, Options, Severity, Sources, parse, parse_bytes};
 
 /// The standard header, kept in the binary so that nothing has to be installed.
@@ -56,7 +53,7 @@ pub struct Checked {
 
 impl Checked {
     /// Drops the warnings that the text has asked to be left out.
-    fn drop_quiet(&mut self) {
+    pub(super) fn drop_quiet(&mut self) {
         let sources = &self.sources;
         self.diagnostics.list.retain(|d| d.severity == Severity::Error || !sources.is_quiet(d.span));
     }
@@ -114,32 +111,6 @@ impl Compiler {
             checked.drop_quiet();
         }
         checked
-    }
-
-    /// Says everything there is to say about a text that is being written: what is wrong beside a syntax error too, and what its names
-    /// stand for.
-    pub fn study(&self, name: &str, text: &str) -> (Checked, Notes) {
-        let parsed = parse(name, text, &self.options);
-        let syntax = parsed.diagnostics.has_errors();
-        let mut diagnostics = parsed.diagnostics;
-        let (typed, mut more, notes) = check_noting(&parsed.file, self.closures.table());
-        if syntax {
-            drop_echoes(&mut more, &notes, &parsed.sources);
-        }
-        diagnostics.append(more);
-        if let Some(typed) = &typed {
-            let mut odd = crate::check::unused(typed);
-            odd.list.retain(|d| parsed.sources.written(d.span).is_some_and(|at| at.file == MAIN_FILE));
-            diagnostics.append(odd);
-        }
-        let shader = typed.filter(|_| !syntax).map(|typed| Shader {
-            typed: Arc::new(typed),
-            sources: parsed.sources.clone(),
-            closures: self.closures.clone(),
-        });
-        let mut checked = Checked { shader, diagnostics, sources: parsed.sources, tree: parsed.file };
-        checked.drop_quiet();
-        (checked, notes)
     }
 
     fn finish(&self, parsed: velour_grammar::Parsed) -> Checked {
@@ -206,23 +177,6 @@ impl Compiler {
         let Checked { shader, diagnostics, sources, .. } = checked;
         shader.ok_or(CompileError::Text { diagnostics, sources })
     }
-}
-
-/// Drops what is said only because the tree lacks what did not parse: a shader, a `return`, or a name that stands where nobody knows
-/// what it is.
-fn drop_echoes(diagnostics: &mut Diagnostics, notes: &Notes, sources: &Sources) {
-    let missing = |code: &str| matches!(code, "E0403" | "E0405" | "E0407");
-    let known: HashSet<u32> = notes.uses.iter().filter_map(|used| sources.name_token(used.span, &used.name)).collect();
-    let told: HashSet<u32> =
-        diagnostics.list.iter().filter(|d| missing(d.code)).flat_map(|d| d.span.first..=d.span.last).collect();
-    let lost = (0..sources.token_count()).filter(|token| !known.contains(token) && !told.contains(token));
-    let word = |text: &&str| text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    let lost: HashSet<&str> = lost.map(|token| sources.token_text(token)).filter(word).collect();
-    let echo = |d: &velour_grammar::Diagnostic| match d.code {
-        "E0402" | "E0409" | "E0508" => true,
-        code => missing(code) && (d.span.first..=d.span.last).any(|token| lost.contains(sources.token_text(token))),
-    };
-    diagnostics.list.retain(|d| !echo(d));
 }
 
 /// Compiles a text with the built-in header and the standard closures.

@@ -65,6 +65,12 @@ fn what_means_something_is_checked_beside_a_syntax_error() {
     client.change(URI, json!([{ "range": { "start": { "line": 2, "character": 18 }, "end": { "line": 2, "character": 20 } }, "text": "" }]));
     let found = codes(&client.diagnostics(URI));
     assert_eq!(found, ["E0403 4:14-4:22", "E0406 5:9-5:21"]);
+    // A `;` is missing right before a brace, which would take the whole shader along.
+    client.change(
+        URI,
+        json!([{ "text": "surface s(float rough = 0.1)\n{\n    color c = roughnes;\n    Ci = rough\n}\n" }]),
+    );
+    assert_eq!(codes(&client.diagnostics(URI)), ["E0302 3:9-3:14", "E0403 2:14-2:22", "E0501 3:9-3:14"]);
     assert_eq!(client.end(), 0);
 }
 
