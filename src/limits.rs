@@ -112,6 +112,9 @@ pub const TEXTURE_BYTES: u64 = 16 << 30;
 /// Pixels of a picture.
 pub const PIXELS: u64 = 1 << 27;
 
+/// Cells of a contact sheet along a sweep.
+pub const CELLS: usize = 256;
+
 /// Channels of the file of a part: ten tiers and two for carries, of five numbers of two words each.
 pub const PART_CHANNELS: usize = 120;
 

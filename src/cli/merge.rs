@@ -1,6 +1,7 @@
 //! `velour merge`: parts of a picture in, the picture out.
 
 use super::failure::Failure;
+use super::look::LookArgs;
 use super::speak::tell;
 use crate::render::output;
 use crate::render::part::{self, Part, Ranges};
@@ -21,6 +22,8 @@ pub struct MergeArgs {
     /// Leave the sums out of an .exr: the file of a plain render, which nothing can be added to
     #[arg(long)]
     picture: bool,
+    #[command(flatten)]
+    look: LookArgs,
 }
 
 /// Merges parts and writes the picture.
@@ -49,7 +52,7 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let Some(part) = merged else { return Ok(()) };
     complete(args, &part)?;
     let written = if args.picture || format != output::Format::Exr {
-        output::write(&part.picture(), &args.output)
+        output::write_as(&part.picture(), &args.output, &args.look.look())
     } else {
         part::write(&part, &args.output)
     };

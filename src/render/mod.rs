@@ -85,6 +85,7 @@ mod through;
 mod tile;
 mod told;
 mod trace;
+mod view;
 mod wave;
 mod world;
 
@@ -96,3 +97,5 @@ pub use plan::{MaterialPlan, Needs, Plan};
 pub use progress::{Progress, Silent};
 pub use renderer::{Renderer, render};
 pub use settings::{LightChoice, LightPoints, LightStrategy, Settings, Terminator};
+pub(crate) use view::srgb;
+pub use view::{Look, View};
