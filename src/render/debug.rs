@@ -1,10 +1,12 @@
 //! What shaders say at one pixel, in the order in which they say it.
 
 use super::accel::{NOTHING, Ray};
+use super::host::host;
 use super::points::{fill, fill_sky};
 use super::renderer::Renderer;
 use super::segment::{Segment, ray_type};
 use crate::exec::{Machine, Points, Report};
+use std::sync::Arc;
 
 impl Renderer {
     /// Runs the shaders of what the center of a pixel shows, once, and gives what they say, layer by layer; nothing where the pixel
@@ -15,7 +17,9 @@ impl Renderer {
         let (eye, spread) = (world.camera.eye(), world.camera.spread(direction));
         let mut hits = Vec::new();
         world.accel.closest(&[Ray::new(eye, direction)], &mut hits);
-        let mut machine = Machine::with_host(world.host.clone());
+        // One point is soon done, also of a render that was stopped.
+        let host = host(&world.scene.camera, &world.settings, &world.scene.textures, Some(world.accel.clone()));
+        let mut machine = Machine::with_host(Arc::new(host));
         let mut points = Points::new(1);
         let Some(hit) = hits.first().copied().filter(|hit| hit.primitive != NOTHING) else {
             if let Some(background) = world.scene.background {

@@ -61,7 +61,7 @@ impl RenderHost {
 
 impl Host for RenderHost {
     fn gives_up(&self) -> bool {
-        self.stop.as_ref().is_some_and(|stop| stop.now())
+        self.stop.as_ref().is_some_and(|stop| stop.cuts())
     }
 
     fn space(&self, name: &str, points: &Points) -> Option<Matrix> {

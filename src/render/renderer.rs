@@ -80,11 +80,11 @@ struct Gathered {
 }
 
 impl Gathered {
-    /// Nothing yet, but what was said while the world was made. The clock of a time limit runs from `start`.
-    fn new(world: &World, start: Instant) -> Self {
+    /// Nothing yet, but what was said while the world was made.
+    fn new(world: &World) -> Self {
         Gathered {
             film: Film::new(&world.settings),
-            rounds: Rounds::new(&world.settings, start),
+            rounds: Rounds::new(&world.settings, world.stop.clone()),
             dropped: Dropped::default(),
             paths: 0,
             rays: 0,
@@ -132,7 +132,11 @@ impl Renderer {
         let stop = Arc::new(Stop::new(Arc::default()));
         stop.begin(settings, start);
         let make = || {
-            let (scene, reports) = displaced(scene, settings, &stop)?;
+            let (moved, whole) = stop.whole(|| displaced(scene, settings, &stop));
+            let (scene, reports) = moved?;
+            if !whole {
+                return Err(RenderError::Late);
+            }
             let accel = Arc::new(Accel::new(&scene.geometry));
             let mut world = World::new(accel, scene, settings.clone(), None, stop.clone());
             world.reports.extend(reports.iter().cloned());
@@ -141,7 +145,7 @@ impl Renderer {
         let (world, said_moving) = pool.install(make)?;
         Ok(Renderer {
             waves: empty_waves(&pool),
-            gathered: Mutex::new(Gathered::new(&world, start)),
+            gathered: Mutex::new(Gathered::new(&world)),
             said_moving,
             seconds_preparing: start.elapsed().as_secs_f64(),
             fingerprint: OnceLock::new(),
@@ -174,8 +178,13 @@ impl Renderer {
         &self.world.accel
     }
 
-    /// Ends the round that is running, and all that follow, once it is set: from another thread, or by a signal. What is unfinished
-    /// in the middle of a shader is left out.
+    /// Ends the round that is running once it is set: from another thread, or by a signal. What is unfinished in the middle of a shader
+    /// is left out.
+    ///
+    /// It stays set until whoever sets it stores `false`; no change of the scene does, or a signal that comes with a change would be lost.
+    /// Meanwhile rounds add nothing, and changes take hold, but what shaders have to say of lights and of the background for them is asked
+    /// at the next round that may go on. So the picture after a stop is the one without it, whatever was changed in between. Whoever sets it
+    /// to have changes taken stores `false` first and then looks for changes, so that one that comes meanwhile stops the next round.
     pub fn stop(&self) -> &Arc<AtomicBool> {
         self.world.stop.asked()
     }
@@ -195,6 +204,10 @@ impl Renderer {
         let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         gathered.check()?;
         gathered.check_time()?;
+        if !self.prepare()? {
+            return Ok(true);
+        }
+        let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         let tasks = gathered.rounds.next(&self.world.settings, samples);
         let start = Instant::now();
         self.trace(&tasks, progress);
@@ -203,6 +216,32 @@ impl Renderer {
         gathered.check()?;
         gathered.check_time()?;
         Ok(gathered.rounds.look(&self.world.settings, &gathered.film))
+    }
+
+    /// Makes up for what a stop has kept from being prepared; false when it does so again.
+    fn prepare(&mut self) -> Result<bool, RenderError> {
+        if self.world.ready || self.world.stop.now() {
+            return Ok(self.world.ready);
+        }
+        let start = Instant::now();
+        let World { accel, scene, settings, stop, .. } = &self.world;
+        let make = || World::new(accel.clone(), scene.clone(), settings.clone(), None, stop.clone());
+        let world = self.pool.install(make);
+        self.take(world);
+        self.seconds_preparing += start.elapsed().as_secs_f64();
+        // Samples of a part that was gone on from stay.
+        let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
+        gathered.reports.clone_from(&self.world.reports);
+        gathered.check()?;
+        gathered.check_time()?;
+        Ok(self.world.ready)
+    }
+
+    /// Takes a world over the same geometry in place of the one there is.
+    fn take(&mut self, world: World) {
+        self.world = world;
+        self.world.reports.extend(self.said_moving.iter().cloned());
+        self.waves = empty_waves(&self.pool);
     }
 
     /// Renders round after round until nothing is left to do or `progress` asks to stop.
@@ -338,9 +377,8 @@ impl Renderer {
                 Ok(None) | Err(_) => *wave = Mutex::new(None),
             }
         }
-        let start = Instant::now();
-        self.world.stop.begin(&self.world.settings, start);
-        self.gathered = Mutex::new(Gathered::new(&self.world, start));
+        self.world.stop.begin(&self.world.settings, Instant::now());
+        self.gathered = Mutex::new(Gathered::new(&self.world));
     }
 
     /// Looks through another camera; the picture starts anew.
@@ -377,8 +415,9 @@ impl Renderer {
         material.surface = group;
         let of_background = scene.background.is_some_and(|background| background.material as usize == index);
         // A constant is found anew at once; it is the table that is worth keeping.
+        let ready = self.world.ready;
         let sky = match &mut self.world.sky {
-            Sky::Shader { material, table } if !of_background => {
+            Sky::Shader { material, table } if ready && !of_background => {
                 Some(Sky::Shader { material: *material, table: table.take() })
             }
             Sky::Shader { .. } | Sky::Constant(_) => None,
@@ -392,12 +431,11 @@ impl Renderer {
         let start = Instant::now();
         let (accel, stop) = (self.world.accel.clone(), self.world.stop.clone());
         stop.begin(&settings, start);
-        self.world = self.pool.install(|| World::new(accel, scene, settings, sky, stop));
-        self.world.reports.extend(self.said_moving.iter().cloned());
+        let world = self.pool.install(|| World::new(accel, scene, settings, sky, stop));
+        self.take(world);
         self.seconds_preparing = start.elapsed().as_secs_f64();
         self.fingerprint = OnceLock::new();
-        self.waves = empty_waves(&self.pool);
-        self.gathered = Mutex::new(Gathered::new(&self.world, start));
+        self.gathered = Mutex::new(Gathered::new(&self.world));
     }
 }
 
