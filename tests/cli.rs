@@ -402,48 +402,6 @@ fn renders_stop_at_a_noise_or_a_time_and_say_what_they_reached() {
 }
 
 #[test]
-fn a_first_shader_and_scene_are_written_render_and_are_never_written_over() {
-    let place = Place::new();
-    let (code, out, error) = place.say(&["new", "first/silk"]);
-    assert_eq!((code, error.as_str()), (0, ""));
-    let commands: Vec<&str> = out.lines().skip(1).collect();
-    assert_eq!(
-        commands,
-        ["  velour render first/silk.osl -o picture.png", "  velour render first/silk.xml -o scene.png"]
-    );
-    for command in commands {
-        let words: Vec<&str> = command.split_whitespace().skip(1).collect();
-        // Away from the checkout, so that sky, matte and emitter are those in the binary.
-        let (code, _, error) = place.say(&[&words[..], &["--spp", "1"], &SMALL[..]].concat());
-        assert_eq!((code, error.lines().count()), (0, 1), "{error}");
-        assert!(place.path().join(words.last().unwrap()).is_file());
-    }
-    assert_eq!(place.say(&["check", "first/silk.osl"]), (0, String::new(), String::new()));
-
-    place.file("first/silk.osl", "mine");
-    std::fs::remove_file(place.path().join("first/silk.xml")).unwrap();
-    let (code, out, error) = place.say(&["new", "first/silk"]);
-    assert_eq!((code, out.as_str()), (2, ""));
-    let expected = "error: `first/silk.osl` is there already\n  help: nothing is written over; take another name\n";
-    assert_eq!(error, expected);
-    assert_eq!(std::fs::read(place.path().join("first/silk.osl")).unwrap(), b"mine");
-    assert!(!place.path().join("first/silk.xml").exists(), "all or nothing");
-
-    let (code, out, _) = place.say(&["new"]);
-    assert!(code == 0 && out.starts_with("silk.osl is a shader to change"), "{out}");
-    // Names that the language or a scene cannot have as they are.
-    for name in ["color", "2 of-them", "größe.osl"] {
-        let (code, _, error) = place.say(&["new", name]);
-        assert_eq!(code, 0, "{name}: {error}");
-        let scene = format!("{}.xml", name.trim_end_matches(".osl"));
-        let (code, _, error) = place.say(&[&["render", &scene, "-o", "x.png", "--spp", "1"], &SMALL[..]].concat());
-        assert_eq!((code, error.lines().count()), (0, 1), "{name}: {error}");
-    }
-    assert_eq!(place.say(&["new", "a\"b"]).0, 2);
-    assert_eq!(place.say(&["new", "matte.osl/x"]).0, 2, "a file is no folder");
-}
-
-#[test]
 fn shaders_of_the_binary_come_after_those_of_the_scene_and_the_path() {
     let place = Place::new();
     std::fs::remove_file(place.path().join("sky.osl")).unwrap();

@@ -1,4 +1,4 @@
-//! `velour render` of a shader alone, of its parameters, of sheets; looks of a picture.
+//! `velour new`, `velour render` of a shader alone, of its parameters, of sheets; looks of a picture.
 
 use std::path::Path;
 use std::process::Command;
@@ -199,4 +199,52 @@ fn looks_are_of_png_alone_and_by_their_formulas() {
     let exr = |more: &[&str]| color(folder, &[&[scene], more, &SMALL[..], &["1"]].concat(), [0.5, 0.5]);
     assert_eq!(exr(&["--view", "agx", "--exposure", "3"]), exr(&[]), "linear light stays as it is");
     assert_eq!(run(folder, &["render", scene, "-o", "p.png", "--view", "odd"]).0, 2);
+}
+
+#[test]
+fn a_first_shader_and_scene_are_written_render_and_are_never_written_over() {
+    let place = TempDir::new().unwrap();
+    let say = |arguments: &[&str]| {
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_velour")).args(arguments).current_dir(place.path()).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    };
+    let (code, out, error) = say(&["new", "first/silk"]);
+    assert_eq!((code, error.as_str()), (0, ""));
+    let commands: Vec<&str> = out.lines().skip(1).collect();
+    assert_eq!(
+        commands,
+        ["  velour render first/silk.osl -o picture.png", "  velour render first/silk.xml -o scene.png"]
+    );
+    for command in commands {
+        let words: Vec<&str> = command.split_whitespace().skip(1).collect();
+        // Away from the checkout, so that sky, matte and emitter are those in the binary.
+        let (code, _, error) = say(&[&words[..], &SMALL[..], &["1"]].concat());
+        assert_eq!((code, error.lines().count()), (0, 1), "{error}");
+        assert!(place.path().join(words.last().unwrap()).is_file());
+    }
+    assert_eq!(say(&["check", "first/silk.osl"]), (0, String::new(), String::new()));
+
+    std::fs::write(place.path().join("first/silk.osl"), "mine").unwrap();
+    std::fs::remove_file(place.path().join("first/silk.xml")).unwrap();
+    let (code, out, error) = say(&["new", "first/silk"]);
+    assert_eq!((code, out.as_str()), (2, ""));
+    let expected = "error: `first/silk.osl` is there already\n  help: nothing is written over; take another name\n";
+    assert_eq!(error, expected);
+    assert_eq!(std::fs::read(place.path().join("first/silk.osl")).unwrap(), b"mine");
+    assert!(!place.path().join("first/silk.xml").exists(), "all or nothing");
+
+    let (code, out, _) = say(&["new"]);
+    assert!(code == 0 && out.starts_with("silk.osl is a shader to change"), "{out}");
+    // Names that the language or a scene cannot have as they are.
+    for name in ["color", "2 of-them", "größe.osl"] {
+        let (code, _, error) = say(&["new", name]);
+        assert_eq!(code, 0, "{name}: {error}");
+        let scene = format!("{}.xml", name.trim_end_matches(".osl"));
+        let (code, _, error) = say(&[&["render", &scene, "-o", "x.png"], &SMALL[..], &["1"]].concat());
+        assert_eq!((code, error.lines().count()), (0, 1), "{name}: {error}");
+    }
+    assert_eq!(say(&["new", "a\"b"]).0, 2);
+    assert_eq!(say(&["new", "silk.osl/x"]).0, 2, "a file is no folder");
 }

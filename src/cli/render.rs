@@ -16,7 +16,9 @@ use crate::exec::{Report, ReportKind};
 use crate::limits::{PRINTED, PRINTED_BYTES};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::part::{self, Ranges};
-use crate::render::{About, Explanation, LightChoice, LightPoints, Renderer, Settings, Terminator, output};
+use crate::render::{
+    About, Explanation, Filter, Frame, LightChoice, LightPoints, Renderer, Settings, Terminator, output,
+};
 use crate::scene::{Scene, ShaderFiles};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,7 +46,7 @@ pub struct RenderArgs {
     param: Vec<String>,
     /// Make a sheet of pictures with a parameter at N values, such as roughness 0.1:1:10; a second one goes down
     #[arg(long, num_args = 2, value_names = ["NAME", "FROM:TO:N"], allow_hyphen_values = true, action = clap::ArgAction::Append,
-          conflicts_with_all = ["samples", "share", "resume", "time", "debug_pixel"])]
+          conflicts_with_all = ["samples", "share", "resume", "time", "debug_pixel", "crop"])]
     sweep: Vec<String>,
     #[command(flatten)]
     look: LookArgs,
@@ -102,6 +104,12 @@ pub struct RenderArgs {
     /// Soften the terminator of sheen by eq. 4 of the paper: true or false
     #[arg(long, default_value_t = true, action = clap::ArgAction::Set, value_name = "BOOL")]
     softening: bool,
+    /// Render W x H pixels alone, from the pixel X Y of the picture on
+    #[arg(long, num_args = 4, value_names = ["X", "Y", "W", "H"])]
+    crop: Vec<u32>,
+    /// How samples count for pixels: tent (the least noise), box (no two pixels share noise, for denoisers) or blackman-harris
+    #[arg(long, default_value = "tent")]
+    filter: Filter,
     /// Send every sample through its pixel's centre
     #[arg(long)]
     no_jitter: bool,
@@ -186,8 +194,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if debug.is_none() {
         check_output(args, path)?;
     }
-    if args.res.len() > 2 || args.debug_pixel.len() > 2 {
-        let text = "error: --res and --debug-pixel are given once\n  help: take one of them out";
+    if args.res.len() > 2 || args.debug_pixel.len() > 2 || args.crop.len() > 4 {
+        let text = "error: --res, --crop and --debug-pixel are given once\n  help: take one of them out";
         return Err(Failure::Usage(text.to_owned()));
     }
     if output::is_standard_output(path) {
@@ -307,6 +315,10 @@ fn settings_for(args: &RenderArgs, scene: &Scene, start: Instant) -> Result<Sett
     if let ([], Some(stated)) = (&args.res[..], scene.options.resolution) {
         [settings.width, settings.height] = stated;
     }
+    if let Ok([x, y, width, height]) = <[u32; 4]>::try_from(&args.crop[..]) {
+        settings.frame = Some(Frame { size: [settings.width, settings.height], at: [x, y] });
+        (settings.width, settings.height) = (width, height);
+    }
     settings.threads = capped(args.threads);
     settings.seconds = args.time.map(|seconds| time_to_trace(seconds, start, &settings));
     Ok(settings)
@@ -339,7 +351,7 @@ fn check_output(args: &RenderArgs, path: &Path) -> Result<(), Failure> {
 
 /// Prints what shaders say at a pixel, with the name of the layer before the first word of each.
 fn debug_pixel(renderer: &Renderer, [x, y]: [u32; 2]) -> Result<(), Failure> {
-    let Settings { width, height, .. } = *renderer.settings();
+    let [width, height] = renderer.settings().whole_frame().size;
     if x >= width || y >= height {
         return Err(Failure::Usage(format!("error: there is no pixel {x} {y} in a picture of {width} x {height}")));
     }
@@ -368,6 +380,7 @@ fn settings(args: &RenderArgs) -> Settings {
         threads: args.threads,
         max_bounces: args.max_bounces.unwrap_or(defaults.max_bounces),
         jitter: !args.no_jitter,
+        filter: args.filter,
         alpha: args.alpha,
         light_choice: args.light_choice,
         light_points: args.light_points,

@@ -87,6 +87,7 @@ mod told;
 mod trace;
 mod view;
 mod wave;
+mod window;
 mod world;
 
 pub use error::{OutputError, RenderError, SettingsError};
@@ -96,6 +97,6 @@ pub use image::{About, Image};
 pub use plan::{MaterialPlan, Needs, Plan};
 pub use progress::{Progress, Silent};
 pub use renderer::{Renderer, render};
-pub use settings::{LightChoice, LightPoints, LightStrategy, Settings, Terminator};
+pub use settings::{Filter, Frame, LightChoice, LightPoints, LightStrategy, Settings, Terminator};
 pub(crate) use view::srgb;
 pub use view::{Look, View};

@@ -17,7 +17,7 @@ pub const SHIPPED: [(&str, &str); 12] = [
 ];
 
 /// File name and text of each scene; a file of the same name goes before it.
-pub const SHIPPED_SCENES: [(&str, &str); 10] = [
+pub const SHIPPED_SCENES: [(&str, &str); 11] = [
     ("curtain.xml", include_str!("../../shaders/scenes/curtain.xml")),
     ("figure1.xml", include_str!("../../shaders/scenes/figure1.xml")),
     ("figure3-back.xml", include_str!("../../shaders/scenes/figure3-back.xml")),
@@ -28,6 +28,7 @@ pub const SHIPPED_SCENES: [(&str, &str); 10] = [
     ("million.xml", include_str!("../../shaders/scenes/million.xml")),
     ("models.xml", include_str!("../../shaders/scenes/models.xml")),
     ("spheres.xml", include_str!("../../shaders/scenes/spheres.xml")),
+    ("still.xml", include_str!("../../shaders/scenes/still.xml")),
 ];
 
 /// File name and text of a scene that is asked for by its bare name: `figure1` or `figure1.xml`.
