@@ -4,10 +4,10 @@
 //! by its name before: whoever may change a link between the look and the opening gains nothing. A file outside of the sandbox looks like
 //! one that is not there, so that no message tells whether there is one.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -8,6 +8,7 @@ mod failure;
 mod info;
 mod info_file;
 mod keep;
+mod live;
 mod merge;
 mod names;
 mod new;
