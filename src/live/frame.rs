@@ -1,5 +1,6 @@
 //! A picture as a page shows it: bytes for a canvas.
 
+use crate::math::elementary::exp2;
 use crate::render::Image;
 use crate::render::output::srgb;
 use std::sync::LazyLock;
@@ -33,7 +34,7 @@ impl Frame {
     /// Decision (2026-11-30): plain bytes instead of a PNG: 640 x 256 pixels take 1 ms to make and .7 MB over the loopback device, where
     /// encoding takes longer than the device.
     pub fn of(image: &Image, stops: f32) -> Frame {
-        let scale = stops.clamp(-20.0, 20.0).exp2();
+        let scale = exp2(stops.clamp(-20.0, 20.0));
         let byte = |light: f32| CURVE[((light * scale).clamp(0.0, 1.0).sqrt() * (STEPS - 1) as f32 + 0.5) as usize];
         let mut bytes = Vec::with_capacity(4 * image.width as usize * image.height as usize);
         for pixel in image.pixels.chunks_exact(image.channels) {

@@ -138,7 +138,10 @@ impl Desk {
     }
 
     fn news(&self, after: u64) -> Answer {
-        self.inbox.push(Wish::Watch);
+        // Who sleeps because nobody looks is woken; else this would be in the way of the round.
+        if !self.board.watched() {
+            self.inbox.push(Wish::Watch);
+        }
         let news = self.board.wait(after, PATIENCE);
         let json = json!({"version": news.version, "news": news.pieces}).to_string();
         let picture = news.frame.as_ref().map_or(0, |frame| frame.bytes.len());

@@ -3,12 +3,13 @@
 use super::board::Board;
 use super::controls::{controls, label};
 use super::frame::Frame;
-use super::inbox::{Inbox, Wish};
+use super::inbox::{Inbox, Knob, Wish};
 use super::pixel::{DIRECTIONS, pixel};
 use super::source::Source;
 use super::stages::Stages;
 use super::subject::{Overrides, Subject};
 use super::trial::Trial;
+use super::values::Given;
 use super::watch::Watched;
 use crate::exec::Report;
 use crate::limits::{PRINTED, PRINTED_BYTES};
@@ -73,6 +74,8 @@ pub struct Session {
     /// Milliseconds from the last change to its first picture.
     waited: Option<f64>,
     followed: usize,
+    /// When the last picture was put up.
+    shown: Instant,
 }
 
 /// Ends a round when there is a wish.
@@ -115,6 +118,7 @@ impl Session {
             since: Some(Instant::now()),
             waited: None,
             followed: 0,
+            shown: Instant::now(),
         }
     }
 
@@ -127,7 +131,9 @@ impl Session {
             }
             let idle = matches!(self.work, Work::None) || !(self.since.is_some() || self.board.watched());
             if idle {
-                self.inbox.wait(Duration::from_secs(3600));
+                // Whoever comes to see rings, and may do so a moment too early.
+                let unseen = !matches!(self.work, Work::None);
+                self.inbox.wait(Duration::from_secs(if unseen { 1 } else { 3600 }));
             } else {
                 self.advance();
             }
@@ -141,13 +147,7 @@ impl Session {
             match wish {
                 Wish::Close => return false,
                 Wish::Changed(path) => drop(changed.insert(path)),
-                Wish::Set(knob, given) => {
-                    self.dirty.insert(knob.group);
-                    match given {
-                        Some(given) => drop(self.overrides.insert(knob, given)),
-                        None => drop(self.overrides.remove(&knob)),
-                    }
-                }
+                Wish::Set(knob, given) => self.set(knob, given),
                 Wish::Reset => {
                     self.dirty.extend(self.overrides.keys().map(|knob| knob.group));
                     self.overrides.clear();
@@ -175,6 +175,23 @@ impl Session {
         }
         looks.into_iter().for_each(|(at, answer)| self.look(at, &answer));
         true
+    }
+
+    /// Gives a parameter a value, if it is there and the value fits.
+    fn set(&mut self, knob: Knob, given: Option<Given>) {
+        let fits = |given: &Given| self.subject.as_ref().is_some_and(|subject| subject.fits(&knob, given));
+        match given {
+            Some(given) if fits(&given) => {
+                self.dirty.insert(knob.group);
+                self.overrides.insert(knob, given);
+            }
+            Some(_) => {}
+            None => {
+                if self.overrides.remove(&knob).is_some() {
+                    self.dirty.insert(knob.group);
+                }
+            }
+        }
     }
 
     /// Waits until the files are quiet, and finds out what they are to the picture.
@@ -321,11 +338,12 @@ impl Session {
             Err(error) => return self.fail(worded(&error)),
         };
         let taken = stages.renderer().taken();
-        if taken[0] == 0 || (taken[0] == before && left) {
+        // The first picture of a size is shown at once, later ones now and then.
+        let due = before == 0 || !left || self.shown.elapsed().as_secs_f64() >= PACE;
+        if taken[0] == 0 || !due {
             return;
         }
-        let refined = coarse.then(|| stages.renderer().picture());
-        let image = refined.unwrap_or_else(|| stages.renderer().picture());
+        let image = stages.renderer().picture();
         if coarse {
             self.work = Work::Whole;
         } else if !left {
@@ -346,6 +364,7 @@ impl Session {
         if let Some(since) = self.since.take() {
             self.waited = Some(since.elapsed().as_secs_f64() * 1e3);
         }
+        self.shown = Instant::now();
         let frame = Frame::of(&image, self.exposure);
         let size = self.stages.as_ref().map_or([image.width, image.height], Stages::size);
         let about = &image.about;

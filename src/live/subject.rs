@@ -7,6 +7,7 @@ use super::values::Given;
 use crate::check::constants;
 use crate::compile::Shader;
 use crate::exec::Group;
+use crate::lang::types::Type;
 use crate::scene::{GroupCompiler, GroupSpec, Layer, Scene, SceneError, SceneProblem, SceneSource, ShaderFiles, Usage};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -164,6 +165,15 @@ impl Subject {
         groups.map(|k| (self.parts[k].spec.usage != Usage::Displacement).then_some(k)).collect()
     }
 
+    /// Is there such a parameter, and does it take such a value?
+    pub fn fits(&self, knob: &Knob, given: &Given) -> bool {
+        let part = self.parts.get(knob.group);
+        let pair = part.and_then(|part| Some((part.spec.layers.get(knob.layer)?, part.shaders.get(knob.layer)?)));
+        pair.is_some_and(|(layer, shader)| {
+            type_of(shader, &knob.name).and_then(|ty| given.param(&knob.name, ty, layer)).is_some()
+        })
+    }
+
     /// Does a change of the group move surfaces?
     pub fn moves(&self, group: usize) -> bool {
         self.parts.get(group).is_some_and(|part| part.spec.usage == Usage::Displacement)
@@ -220,6 +230,13 @@ pub fn base(layer: &Layer, shader: &Shader, name: &str) -> Option<Given> {
     Given::of_constants(&constants(param.default.as_ref()?)?)
 }
 
+/// The type of a shader's parameter.
+fn type_of<'s>(shader: &'s Shader, name: &str) -> Option<&'s Type> {
+    let variables = &shader.typed.variables;
+    let mut all = shader.typed.params.iter().map(|param| &variables[param.var.0 as usize]);
+    all.find(|variable| variable.name == name).map(|variable| &variable.ty)
+}
+
 /// The files of shaders' texts, by their keys.
 fn files_of(shaders: &[Shader]) -> BTreeSet<PathBuf> {
     shaders.iter().flat_map(|shader| shader.sources.files()).map(|name| key(Path::new(name))).collect()
@@ -255,10 +272,8 @@ fn compiled(
         if was.is_some_and(|(layer, shader)| base(layer, shader, &knob.name) != now) {
             return false;
         }
-        let variables = &shader.typed.variables;
-        let mut types = shader.typed.params.iter().map(|param| &variables[param.var.0 as usize]);
-        let ty = types.find(|variable| variable.name == knob.name.as_str()).map(|variable| &variable.ty);
-        let Some(param) = ty.and_then(|ty| given.param(&knob.name, ty, layer)) else { return false };
+        let param = type_of(shader, &knob.name).and_then(|ty| given.param(&knob.name, ty, layer));
+        let Some(param) = param else { return false };
         layer.params.retain(|other| other.name != param.name);
         layer.params.push(param);
         true
