@@ -4,7 +4,7 @@
 
 use image::codecs::jpeg::JpegEncoder;
 use std::path::{Path, PathBuf};
-use velour::render::{Image, Look, Settings, Silent, render};
+use velour::render::{Image, Screen, Settings, Silent, render};
 use velour::scene::{Scene, ShaderFiles};
 
 /// Scenes of the binary, and the sizes of their pictures.
@@ -114,7 +114,7 @@ fn picture(
 
 fn jpeg(image: &Image) -> Result<Vec<u8>, image::ImageError> {
     let mut out = Vec::new();
-    let bytes = Look::default().bytes(image);
+    let bytes = Screen::default().bytes(image);
     JpegEncoder::new_with_quality(&mut out, 90).encode(
         &bytes,
         image.width,

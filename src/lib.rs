@@ -68,6 +68,7 @@
 //! | `scene` | `render` | scene XML, meshes, shader groups |
 //! | `render` | `render` | wavefront path tracer, film, image files |
 //! | `measure` | `measure`, `chart` | furnace, statistics, quadrature: what tests and charts run on |
+//! | `live` | `live` | a page that shows a picture while its text is edited |
 //! | `cli` | `cli` | arguments and subcommands; the only room that prints or exits |
 //!
 //! # Two ways through the house
@@ -132,6 +133,8 @@ pub mod files;
 pub mod ir;
 pub mod lang;
 pub mod limits;
+#[cfg(feature = "live")]
+pub mod live;
 pub mod math;
 // Its truths are f64, and no picture depends on it.
 #[cfg(feature = "measure")]

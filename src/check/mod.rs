@@ -12,6 +12,7 @@ mod call;
 mod candidate;
 pub mod codes;
 pub mod compared;
+mod constant;
 mod context;
 mod convert;
 mod declare;
@@ -26,6 +27,7 @@ mod statement;
 pub mod typed;
 mod unused;
 
+pub use constant::{Constant, constants};
 pub use unused::unused;
 
 use crate::lang::closures::ClosureTable;

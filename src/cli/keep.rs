@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::speak::tell;
 use crate::render::part::{self, Part};
-use crate::render::{Look, Progress, Renderer, output};
+use crate::render::{Progress, Renderer, Screen, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::path::{Path, PathBuf};
@@ -86,7 +86,7 @@ pub struct Keeping<'a> {
     /// The part that the render goes on from.
     pub resumed: Option<&'a Path>,
     /// How a PNG shows light.
-    pub look: Look,
+    pub screen: Screen,
 }
 
 impl Keeping<'_> {
@@ -162,7 +162,7 @@ impl Keeping<'_> {
         let part = (is_part || !done).then(|| renderer.part());
         let written = match part.as_ref().filter(|_| is_part) {
             Some(part) => part::write(part, self.output),
-            None => output::write_as(&renderer.picture(), self.output, &self.look),
+            None => output::write_as(&renderer.picture(), self.output, &self.screen),
         };
         written.map_err(failed)?;
         match beside {

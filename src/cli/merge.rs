@@ -1,7 +1,7 @@
 //! `velour merge`: parts of a picture in, the picture out.
 
 use super::failure::Failure;
-use super::look::LookArgs;
+use super::screen::ScreenArgs;
 use super::speak::tell;
 use crate::render::output;
 use crate::render::part::{self, Part, Ranges};
@@ -23,7 +23,7 @@ pub struct MergeArgs {
     #[arg(long)]
     picture: bool,
     #[command(flatten)]
-    look: LookArgs,
+    screen: ScreenArgs,
 }
 
 /// Merges parts and writes the picture.
@@ -52,7 +52,7 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let Some(part) = merged else { return Ok(()) };
     complete(args, &part)?;
     let written = if args.picture || format != output::Format::Exr {
-        output::write_as(&part.picture(), &args.output, &args.look.look())
+        output::write_as(&part.picture(), &args.output, &args.screen.screen())
     } else {
         part::write(&part, &args.output)
     };

@@ -9,11 +9,13 @@ mod info;
 mod info_file;
 mod keep;
 mod label;
-mod look;
+mod live;
+
 mod merge;
 mod names;
 mod new;
 mod render;
+mod screen;
 mod shade;
 mod share;
 mod sheet;

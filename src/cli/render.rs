@@ -3,7 +3,7 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::keep::{Keeping, Signals};
-use super::look::LookArgs;
+use super::screen::ScreenArgs;
 use super::share::Share;
 use super::sheet::{Sheet, Sweep};
 use super::speak::{leave_output, say, tell};
@@ -49,7 +49,7 @@ pub struct RenderArgs {
           conflicts_with_all = ["samples", "share", "resume", "time", "debug_pixel", "crop"])]
     sweep: Vec<String>,
     #[command(flatten)]
-    look: LookArgs,
+    screen: ScreenArgs,
     /// Print what shaders say at this pixel, layer by layer, and render nothing
     #[arg(long, num_args = 2, value_names = ["X", "Y"])]
     debug_pixel: Vec<u32>,
@@ -236,8 +236,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     go_on(args, &mut renderer)?;
     let every = Some(args.checkpoint).filter(|seconds| *seconds > 0.0);
-    let look = args.look.look();
-    let keeping = Keeping { output: path, every, parts: args.leaves_part(), resumed: args.resume.as_deref(), look };
+    let screen = args.screen.screen();
+    let keeping = Keeping { output: path, every, parts: args.leaves_part(), resumed: args.resume.as_deref(), screen };
     let signals = Signals::listen(renderer.stop())?;
     let outcome = keeping.render(&mut renderer, &signals)?;
     let about = renderer.about();
@@ -274,7 +274,7 @@ fn render_sheet(
     let signals = Signals::listen(renderer.stop())?;
     let image = sheet.render(renderer, scene, shaders, &signals)?;
     pass_on(&image.about.reports);
-    output::write_as(&image, path, &args.look.look()).map_err(|error| Failure::Usage(format!("error: {error}")))?;
+    output::write_as(&image, path, &args.screen.screen()).map_err(|error| Failure::Usage(format!("error: {error}")))?;
     if let Some(status) = signals.asked() {
         tell(&format!("stopped: {} holds the cells that were done\n", path.display()));
         return Err(Failure::Stopped(status));

@@ -159,7 +159,7 @@ impl Sheet<'_> {
 /// The renderer with what `shaders` make of the scene's groups now; its hierarchy stays, unless other surfaces are moved.
 fn changed(mut renderer: Renderer, scene: &Scene, shaders: &ShaderFiles) -> Result<Renderer, Failure> {
     let compile = |spec: &GroupSpec| shaders.compile(spec).map_err(Failure::of_scene);
-    let mut moved = None;
+    let (mut moved, mut groups) = (None, Vec::new());
     for (number, material) in scene.materials.iter().enumerate() {
         if let Some(spec) = material.displacement_spec.as_ref().filter(|spec| shaders.sets(spec)) {
             let moved =
@@ -170,12 +170,15 @@ fn changed(mut renderer: Renderer, scene: &Scene, shaders: &ShaderFiles) -> Resu
             let group = compile(&material.surface_spec)?;
             match &mut moved {
                 Some(moved) => moved.materials[number].surface = group,
-                None => renderer.set_material(number, group).map_err(Failure::of_render)?,
+                None => groups.push((number, group)),
             }
         }
     }
     match moved {
-        None => Ok(renderer),
+        None => {
+            renderer.set_materials(groups).map_err(Failure::of_render)?;
+            Ok(renderer)
+        }
         Some(scene) => Renderer::new(&scene, &renderer.settings().clone()).map_err(Failure::of_render),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::OutputError;
 use super::image::Image;
-use super::view::Look;
+use super::view::Screen;
 use crate::files::{Destination, Sink};
 use exr::prelude as exr;
 use std::io::Write;
@@ -14,7 +14,7 @@ use std::path::Path;
 pub enum Format {
     /// OpenEXR, linear, 32-bit floats.
     Exr,
-    /// PNG, 8 bits, by a [`Look`].
+    /// PNG, 8 bits, by a [`Screen`].
     Png,
     /// Radiance HDR, linear, shared exponent.
     Hdr,
@@ -26,17 +26,17 @@ pub fn check(path: &Path) -> Result<Format, OutputError> {
     look(path).map(|(format, _)| format)
 }
 
-/// Writes `image` to `path` in the format of its extension; a PNG by the default [`Look`].
+/// Writes `image` to `path` in the format of its extension; a PNG by the default [`Screen`].
 pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
-    write_as(image, path, &Look::default())
+    write_as(image, path, &Screen::default())
 }
 
-/// The same, with a look of its own for PNG; the other formats keep linear light as it is.
-pub fn write_as(image: &Image, path: &Path, look: &Look) -> Result<(), OutputError> {
+/// The same, for a screen of its own where it is a PNG; the other formats keep linear light as it is.
+pub fn write_as(image: &Image, path: &Path, screen: &Screen) -> Result<(), OutputError> {
     let format = check(path)?;
     write_with(path, |sink| match format {
         Format::Exr => write_exr(image, sink),
-        Format::Png => write_png(image, look, sink),
+        Format::Png => write_png(image, screen, sink),
         Format::Hdr => write_hdr(image, sink),
     })
 }
@@ -166,9 +166,9 @@ fn note(image: &Image) -> String {
     format!("scene={} samples={samples}{noise} seed={} velour={version}", about.scene, about.seed)
 }
 
-fn write_png(image: &Image, look: &Look, writer: &mut impl Write) -> Result<(), String> {
+fn write_png(image: &Image, screen: &Screen, writer: &mut impl Write) -> Result<(), String> {
     use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
-    let bytes = look.bytes(image);
+    let bytes = screen.bytes(image);
     let kind = if image.channels == 4 { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
     PngEncoder::new(writer).write_image(&bytes, image.width, image.height, kind).map_err(|e| e.to_string())
 }

@@ -154,6 +154,30 @@ impl Renderer {
         })
     }
 
+    /// Another renderer of the scene as it is now, over the same hierarchy.
+    ///
+    /// # Errors
+    /// The settings cannot be rendered by.
+    pub fn beside(&self, settings: &Settings) -> Result<Self, RenderError> {
+        let start = Instant::now();
+        settings.check().map_err(RenderError::Settings)?;
+        let pool = pool(settings)?;
+        let stop = Arc::new(Stop::new(Arc::default()));
+        stop.begin(settings, start);
+        let (accel, scene) = (self.world.accel.clone(), self.world.scene.clone());
+        let mut world = pool.install(|| World::new(accel, scene, settings.clone(), None, stop));
+        world.reports.extend(self.said_moving.iter().cloned());
+        Ok(Renderer {
+            waves: empty_waves(&pool),
+            gathered: Mutex::new(Gathered::new(&world)),
+            said_moving: self.said_moving.clone(),
+            seconds_preparing: start.elapsed().as_secs_f64(),
+            fingerprint: OnceLock::new(),
+            world,
+            pool,
+        })
+    }
+
     /// The scene as it is rendered now.
     pub fn scene(&self) -> &Scene {
         &self.world.scene
@@ -409,11 +433,19 @@ impl Renderer {
     /// What depends on the group is renewed: the plan, emission, lights, the background and its table if they are of this
     /// material.
     pub fn set_material(&mut self, index: usize, group: Group) -> Result<(), RenderError> {
+        self.set_materials(vec![(index, group)])
+    }
+
+    /// The same for several materials at once, by their indices.
+    pub fn set_materials(&mut self, groups: Vec<(usize, Group)>) -> Result<(), RenderError> {
         let mut scene = self.world.scene.clone();
         let count = scene.materials.len();
-        let material = scene.materials.get_mut(index).ok_or(RenderError::Material { index, count })?;
-        material.surface = group;
-        let of_background = scene.background.is_some_and(|background| background.material as usize == index);
+        let mut of_background = false;
+        for (index, group) in groups {
+            let material = scene.materials.get_mut(index).ok_or(RenderError::Material { index, count })?;
+            material.surface = group;
+            of_background |= scene.background.is_some_and(|background| background.material as usize == index);
+        }
         // A constant is found anew at once; it is the table that is worth keeping.
         let ready = self.world.ready;
         let sky = match &mut self.world.sky {

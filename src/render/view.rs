@@ -40,14 +40,14 @@ impl FromStr for View {
 
 /// How a picture is shown in eight bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Look {
+pub struct Screen {
     /// Stops by which light is raised (2 for each) before it is looked at.
     pub exposure: f32,
     /// The view.
     pub view: View,
 }
 
-impl Look {
+impl Screen {
     /// A linear color as a screen shows it, encoded, each number in [0, 1].
     pub fn encode(&self, color: [f32; 3]) -> [f32; 3] {
         self.encode_scaled(color, exp2(self.exposure))
@@ -143,18 +143,18 @@ fn agx_curve(x: f32) -> f32 {
 mod tests {
     use super::*;
 
-    const SRGB: Look = Look { exposure: 0.0, view: View::Srgb };
+    const SRGB: Screen = Screen { exposure: 0.0, view: View::Srgb };
 
     #[test]
     fn below_the_knee_soft_is_srgb_and_above_it_never_clips() {
         for i in 0..=600 {
             let c = [i as f32 / 1000.0, 0.3 * i as f32 / 1000.0, 0.0];
-            assert_eq!(Look::default().encode(c), SRGB.encode(c));
+            assert_eq!(Screen::default().encode(c), SRGB.encode(c));
         }
         let mut before = [0.0; 3];
         for i in 0..400 {
             let x = 0.59 * exp2(i as f32 / 40.0);
-            let now = Look::default().encode([x, 0.5 * x, 0.1 * x]);
+            let now = Screen::default().encode([x, 0.5 * x, 0.1 * x]);
             // No step, no way back, no clipping below ten stops.
             assert!(
                 (0..3).all(|k| now[k] >= before[k] && (i == 0 || now[k] - before[k] < 0.02) && now[k] < 1.0),
@@ -163,14 +163,14 @@ mod tests {
             before = now;
         }
         assert!(before.iter().all(|c| *c > 0.97), "a lamp is white: {before:?}");
-        assert_eq!(Look::default().encode([f32::MAX; 3]), [1.0; 3]);
-        assert_eq!(Look::default().encode([-1.0, 0.0, 0.0]), [0.0; 3]);
+        assert_eq!(Screen::default().encode([f32::MAX; 3]), [1.0; 3]);
+        assert_eq!(Screen::default().encode([-1.0, 0.0, 0.0]), [0.0; 3]);
     }
 
     #[test]
     fn exposure_doubles_light_a_stop() {
         for view in View::ALL.map(|(_, view)| view) {
-            let stops = |exposure| Look { exposure, view };
+            let stops = |exposure| Screen { exposure, view };
             assert_eq!(stops(1.0).encode([0.1, 0.2, 0.3]), stops(0.0).encode([0.2, 0.4, 0.6]));
             assert_eq!(stops(-3.0).encode([0.8, 2.0, 8.0]), stops(0.0).encode([0.1, 0.25, 1.0]));
         }
@@ -179,13 +179,13 @@ mod tests {
     #[test]
     fn agx_is_that_of_its_table() {
         // From the closed form in f64: middle grey is at the pivot, and the ends of the range are black and white.
-        let agx = |x: f32| Look { exposure: 0.0, view: View::Agx }.encode([x; 3]);
+        let agx = |x: f32| Screen { exposure: 0.0, view: View::Agx }.encode([x; 3]);
         for (x, expected) in [(0.18, 0.5), (0.18 / 1024.0, 0.0), (0.18 * 90.51, 1.0), (1.0, 0.787_52), (0.01, 0.096_15)]
         {
             let found = agx(x);
             assert!(found.iter().all(|c| (c - expected).abs() < 1e-4), "{x}: {found:?}, not {expected}");
         }
-        let [r, g, b] = Look { exposure: 0.0, view: View::Agx }.encode([20.0, 0.0, 0.0]);
+        let [r, g, b] = Screen { exposure: 0.0, view: View::Agx }.encode([20.0, 0.0, 0.0]);
         assert!(r > g && g > 0.3 && b > 0.3, "a bright red pales: {r} {g} {b}");
     }
 

@@ -1,10 +1,10 @@
 //! The arguments of all commands that write a picture for screens.
 
-use crate::render::{Look, View};
+use crate::render::{Screen, View};
 
 /// How a PNG shows light.
 #[derive(clap::Args, Clone, Copy, Debug)]
-pub struct LookArgs {
+pub struct ScreenArgs {
     /// Raise the light of a .png by so many stops
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops)]
     exposure: f32,
@@ -13,10 +13,10 @@ pub struct LookArgs {
     view: View,
 }
 
-impl LookArgs {
-    /// The look they ask for.
-    pub fn look(&self) -> Look {
-        Look { exposure: self.exposure, view: self.view }
+impl ScreenArgs {
+    /// The screen they ask for.
+    pub fn screen(&self) -> Screen {
+        Screen { exposure: self.exposure, view: self.view }
     }
 }
 
