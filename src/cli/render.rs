@@ -3,6 +3,7 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::keep::{Keeping, Signals};
+use super::merge::part_of;
 use super::screen::ScreenArgs;
 use super::share::Share;
 use super::sheet::{Sheet, Sweep};
@@ -13,9 +14,10 @@ use super::watch::TimeBound;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
+use crate::files::Room;
 use crate::limits::{PRINTED, PRINTED_BYTES};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
-use crate::render::part::{self, Ranges};
+use crate::render::part::Ranges;
 use crate::render::{
     About, Explanation, Filter, Frame, LightChoice, LightPoints, Renderer, Settings, Terminator, output,
 };
@@ -77,6 +79,9 @@ pub struct RenderArgs {
     /// Keep what there is every S seconds, for --resume; 0 keeps nothing before the end or a signal
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = checkpoint)]
     checkpoint: f64,
+    /// Do not hold room on the disk for the picture while it renders
+    #[arg(long)]
+    no_hold: bool,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u32,
@@ -238,11 +243,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let every = Some(args.checkpoint).filter(|seconds| *seconds > 0.0);
     let screen = args.screen.screen();
     let keeping = Keeping { output: path, every, parts: args.leaves_part(), resumed: args.resume.as_deref(), screen };
+    let room = if args.no_hold { None } else { Some(hold(path, &renderer, args.leaves_part())?) };
     let signals = Signals::listen(renderer.stop())?;
     let outcome = keeping.render(&mut renderer, &signals)?;
     let about = renderer.about();
     pass_on(&about.reports);
-    keeping.write(&renderer, outcome)?;
+    keeping.write(&renderer, outcome, room)?;
     if let Some(status) = signals.asked().filter(|_| !outcome.done) {
         return Err(Failure::Stopped(status));
     }
@@ -327,11 +333,14 @@ fn settings_for(args: &RenderArgs, scene: &Scene, start: Instant) -> Result<Sett
 /// Goes on from the part of `--resume`, if there is one.
 fn go_on(args: &RenderArgs, renderer: &mut Renderer) -> Result<(), Failure> {
     let Some(file) = &args.resume else { return Ok(()) };
-    if !args.compile.access()?.covers(file) {
-        return Err(Failure::Usage(format!("error: {} is not in the sandbox", file.display())));
-    }
-    let part = part::read(file).map_err(|error| Failure::Usage(format!("error: {error}")))?;
+    let part = part_of(&args.compile.access()?, file)?;
     renderer.resume(part).map_err(|error| Failure::Wrong(format!("error: {error}")))
+}
+
+/// Holds room on the disk for what the render will write.
+fn hold(path: &std::path::Path, renderer: &Renderer, part: bool) -> Result<Room, Failure> {
+    let help = "help: make room, name a file elsewhere with -o, or render with --no-hold and hope";
+    output::hold(path, renderer.settings(), part).map_err(|error| Failure::Usage(format!("error: {error}\n  {help}")))
 }
 
 /// Says before the render what could not be written after it.

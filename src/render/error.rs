@@ -151,6 +151,13 @@ pub enum OutputError {
         /// The folder.
         path: PathBuf,
     },
+    /// R0205: the disk has too little room.
+    NoRoom {
+        /// The file.
+        path: PathBuf,
+        /// Bytes that it may take.
+        bytes: u64,
+    },
     /// R0204: the file cannot be written.
     Unwritable {
         /// The file.
@@ -171,6 +178,7 @@ impl OutputError {
             OutputError::NoFolder { .. } => "R0202",
             OutputError::IsFolder { .. } => "R0203",
             OutputError::Unwritable { .. } => "R0204",
+            OutputError::NoRoom { .. } => "R0205",
         }
     }
 }
@@ -184,6 +192,10 @@ impl fmt::Display for OutputError {
             }
             OutputError::NoFolder { folder } => write!(f, "the folder `{}` is not there", folder.display()),
             OutputError::IsFolder { path } => write!(f, "`{}` is a folder", path.display()),
+            OutputError::NoRoom { path, bytes } => {
+                let (megabytes, shown) = (bytes.div_ceil(1 << 20), path.display());
+                write!(f, "the disk has no room for `{shown}`, which may take {megabytes} MB")
+            }
             OutputError::Unwritable { path, reason } => write!(f, "cannot write `{}`: {reason}", path.display()),
         }
     }

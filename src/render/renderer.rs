@@ -3,13 +3,14 @@
 use super::accel::Accel;
 use super::displace::displaced;
 use super::error::RenderError;
-use super::film::Film;
+use super::gathered::Gathered;
 use super::image::{About, Image};
 use super::part::{Part, PartError, Whole, counts, fingerprint};
 use super::path::Dropped;
 use super::plan::Plan;
+use super::pool::Threads;
 use super::progress::Progress;
-use super::rounds::{Rounds, Task};
+use super::rounds::Task;
 use super::settings::Settings;
 use super::sky::Sky;
 use super::stop::Stop;
@@ -56,7 +57,7 @@ use std::time::Instant;
 /// ```
 pub struct Renderer {
     world: World,
-    pool: rayon::ThreadPool,
+    pool: Threads,
     /// Each thread's memory.
     waves: Vec<Mutex<Option<Wave>>>,
     gathered: Mutex<Gathered>,
@@ -65,55 +66,6 @@ pub struct Renderer {
     seconds_preparing: f64,
     /// What stands for the scene in the files of parts, once it was asked for.
     fingerprint: OnceLock<u64>,
-}
-
-/// What the threads put together.
-struct Gathered {
-    film: Film,
-    rounds: Rounds,
-    dropped: Dropped,
-    /// Camera samples that were traced here.
-    paths: u64,
-    rays: u64,
-    reports: Vec<Report>,
-    seconds_tracing: f64,
-}
-
-impl Gathered {
-    /// Nothing yet, but what was said while the world was made.
-    fn new(world: &World) -> Self {
-        Gathered {
-            film: Film::new(&world.settings),
-            rounds: Rounds::new(&world.settings, world.stop.clone()),
-            dropped: Dropped::default(),
-            paths: 0,
-            rays: 0,
-            reports: world.reports.clone(),
-            seconds_tracing: 0.0,
-        }
-    }
-
-    /// Takes in what a thread has found out of one tile.
-    fn keep(&mut self, settings: &Settings, task: &Task, wave: &mut Wave) {
-        self.rounds.done(task);
-        let pixels = Tile::number(settings, task.tile).pixels();
-        self.paths += u64::from(pixels) * u64::from(task.end - task.first);
-        self.dropped.merge(&std::mem::take(&mut wave.dropped));
-        self.rays += std::mem::take(&mut wave.traced);
-        self.reports.extend(wave.shading.take_reports());
-    }
-
-    /// Is there anything at all when the time is up?
-    fn check_time(&self) -> Result<(), RenderError> {
-        let nothing = self.rounds.late() && self.rounds.taken().all(|samples| samples == 0);
-        if nothing { Err(RenderError::Late) } else { Ok(()) }
-    }
-
-    /// The first report that a shader cannot be run.
-    fn check(&self) -> Result<(), RenderError> {
-        let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
-        self.reports.iter().find_map(fatal).map_or(Ok(()), Err)
-    }
 }
 
 impl fmt::Debug for Renderer {
@@ -128,7 +80,7 @@ impl Renderer {
         let start = Instant::now();
         settings.check().map_err(RenderError::Settings)?;
         check_camera(&scene.camera)?;
-        let pool = pool(settings)?;
+        let pool = Threads::new(settings.threads)?;
         let stop = Arc::new(Stop::new(Arc::default()));
         stop.begin(settings, start);
         let make = || {
@@ -143,7 +95,12 @@ impl Renderer {
             Ok((world, reports))
         };
         let (world, said_moving) = pool.install(make)?;
-        Ok(Renderer {
+        Ok(Self::of_world(world, pool, said_moving, start))
+    }
+
+    /// Nothing is rendered yet of a world that was begun at `start`.
+    fn of_world(world: World, pool: Threads, said_moving: Vec<Report>, start: Instant) -> Self {
+        Renderer {
             waves: empty_waves(&pool),
             gathered: Mutex::new(Gathered::new(&world)),
             said_moving,
@@ -151,7 +108,7 @@ impl Renderer {
             fingerprint: OnceLock::new(),
             world,
             pool,
-        })
+        }
     }
 
     /// Another renderer of the scene as it is now, over the same hierarchy.
@@ -161,21 +118,13 @@ impl Renderer {
     pub fn beside(&self, settings: &Settings) -> Result<Self, RenderError> {
         let start = Instant::now();
         settings.check().map_err(RenderError::Settings)?;
-        let pool = pool(settings)?;
+        let pool = Threads::new(settings.threads)?;
         let stop = Arc::new(Stop::new(Arc::default()));
         stop.begin(settings, start);
         let (accel, scene) = (self.world.accel.clone(), self.world.scene.clone());
         let mut world = pool.install(|| World::new(accel, scene, settings.clone(), None, stop));
         world.reports.extend(self.said_moving.iter().cloned());
-        Ok(Renderer {
-            waves: empty_waves(&pool),
-            gathered: Mutex::new(Gathered::new(&world)),
-            said_moving: self.said_moving.clone(),
-            seconds_preparing: start.elapsed().as_secs_f64(),
-            fingerprint: OnceLock::new(),
-            world,
-            pool,
-        })
+        Ok(Self::of_world(world, pool, self.said_moving.clone(), start))
     }
 
     /// The scene as it is rendered now.
@@ -239,7 +188,8 @@ impl Renderer {
         gathered.seconds_tracing += start.elapsed().as_secs_f64();
         gathered.check()?;
         gathered.check_time()?;
-        Ok(gathered.rounds.look(&self.world.settings, &gathered.film))
+        let settings = &self.world.settings;
+        Ok(self.pool.install(|| gathered.rounds.look(settings, &gathered.film)))
     }
 
     /// Makes up for what a stop has kept from being prepared; false when it does so again.
@@ -309,7 +259,7 @@ impl Renderer {
         let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
         let settings = &self.world.settings;
         let channels = if settings.alpha { 4 } else { 3 };
-        let pixels = all.film.picture(settings, 0..settings.halves(), channels);
+        let pixels = self.pool.install(|| all.film.picture(settings, 0..settings.halves(), channels));
         Image { width: settings.width, height: settings.height, channels, pixels, about: self.about_of(&all) }
     }
 
@@ -343,7 +293,8 @@ impl Renderer {
     pub fn part(&self) -> Part {
         let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
         let settings = &self.world.settings;
-        Part::new(self.whole(), all.rounds.held().to_vec(), all.film.sums(settings, 0..settings.halves()))
+        let sums = self.pool.install(|| all.film.sums(settings, 0..settings.halves()));
+        Part::new(self.whole(), all.rounds.held().to_vec(), sums)
     }
 
     /// Goes on from a part of this picture, whose samples take the place of all there are. Those of it that lie between
@@ -417,7 +368,7 @@ impl Renderer {
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), RenderError> {
         settings.check().map_err(RenderError::Settings)?;
         if settings.threads != self.world.settings.threads {
-            self.pool = pool(settings)?;
+            self.pool = Threads::new(settings.threads)?;
         }
         self.remake(self.world.scene.clone(), settings.clone(), None);
         Ok(())
@@ -480,12 +431,7 @@ fn check_camera(camera: &Camera) -> Result<(), RenderError> {
     camera.flaw().map_or(Ok(()), |flaw| Err(RenderError::Camera(flaw)))
 }
 
-fn pool(settings: &Settings) -> Result<rayon::ThreadPool, RenderError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-    pool.map_err(|e| RenderError::Threads(e.to_string()))
-}
-
-fn empty_waves(pool: &rayon::ThreadPool) -> Vec<Mutex<Option<Wave>>> {
+fn empty_waves(pool: &Threads) -> Vec<Mutex<Option<Wave>>> {
     (0..pool.current_num_threads()).map(|_| Mutex::new(None)).collect()
 }
 

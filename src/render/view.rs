@@ -5,6 +5,7 @@
 
 use super::image::Image;
 use crate::math::elementary::{exp2, log2, pow, pow_positive};
+use rayon::prelude::*;
 use std::str::FromStr;
 
 /// What becomes of light that a screen cannot show.
@@ -68,14 +69,20 @@ impl Screen {
     pub fn bytes(&self, image: &Image) -> Vec<u8> {
         let (channels, scale) = (image.channels, exp2(self.exposure));
         let byte = |x: f32| (x * 255.0 + 0.5) as u8;
-        let mut out = Vec::with_capacity(image.pixels.len());
-        for pixel in image.pixels.chunks_exact(channels) {
+        let encode = |pixel: &[f32]| -> [u8; 4] {
             let alpha = pixel.get(3).map_or(1.0, |a| a.clamp(0.0, 1.0));
             let scale = if alpha > 0.0 { scale / alpha } else { 0.0 };
             let [r, g, b] = self.encode_scaled([pixel[0], pixel[1], pixel[2]], scale).map(byte);
-            out.extend([r, g, b, byte(alpha)].into_iter().take(channels));
-        }
-        out
+            [r, g, b, byte(alpha)]
+        };
+        let mut bytes = vec![0; image.pixels.len()];
+        let both = bytes.par_chunks_mut(channels << 12).zip(image.pixels.par_chunks(channels << 12));
+        both.for_each(|(bytes, pixels)| {
+            for (bytes, pixel) in bytes.chunks_exact_mut(channels).zip(pixels.chunks_exact(channels)) {
+                bytes.copy_from_slice(&encode(pixel)[..channels]);
+            }
+        });
+        bytes
     }
 }
 

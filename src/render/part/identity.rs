@@ -13,7 +13,8 @@ use std::io::Read;
 /// the same but for chance (2^-64).
 ///
 /// It covers geometry, materials, camera, background, the files of textures and dictionaries that shaders name in their text, and the
-/// settings that change a sample. It does not cover names that shaders put together while they run, but for the tiles of `<UDIM>`.
+/// settings that change a sample. It does not cover the content of files whose names shaders put together while they run, but for the tiles of
+/// `<UDIM>`: whoever changes such a texture between two parts merges samples of two pictures unnoticed.
 /// How many samples there are, threads, and the sizes of batches and tiles do not change a sample.
 pub fn fingerprint(scene: &Scene, settings: &Settings) -> u64 {
     let mut digest = Digest::default();
