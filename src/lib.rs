@@ -70,6 +70,7 @@
 //! | `scene` | `render` | scene XML, meshes, shader groups |
 //! | `render` | `render` | wavefront path tracer, film, image files |
 //! | `measure` | `measure`, `chart` | furnace, statistics, quadrature: what tests and charts run on |
+//! | `live` | `live` | a page that shows a picture while its text is edited |
 //! | `cli` | `cli` | arguments and subcommands; the only room that prints or exits |
 //!
 //! # Two ways through the house
@@ -134,6 +135,8 @@ pub mod files;
 pub mod ir;
 pub mod lang;
 pub mod limits;
+#[cfg(feature = "live")]
+pub mod live;
 #[cfg(feature = "lsp")]
 pub mod lsp;
 pub mod math;

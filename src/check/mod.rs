@@ -12,6 +12,7 @@ mod call;
 mod candidate;
 pub mod codes;
 pub mod compared;
+mod constant;
 mod context;
 mod convert;
 mod declare;
@@ -29,6 +30,7 @@ mod unused;
 
 #[cfg(feature = "lsp")]
 pub(crate) use call::{NOISES, TEXTURE_OPTIONS};
+pub use constant::{Constant, constants};
 pub use unused::unused;
 
 use crate::lang::closures::ClosureTable;

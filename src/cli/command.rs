@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::names::named;
 use super::speak::{lost, tell};
-use super::{chart, check, fmt, info, lsp, merge, new, render, shade, tree, verify};
+use super::{chart, check, fmt, info, live, lsp, merge, new, render, shade, tree, verify};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -22,6 +22,8 @@ enum Command {
     New(new::NewArgs),
     /// Render a scene to an image
     Render(Box<render::RenderArgs>),
+    /// Show a scene or a shader on a page of this machine while it is edited
+    Live(Box<live::LiveArgs>),
     /// Merge parts of a picture, which were rendered apart
     Merge(merge::MergeArgs),
     /// Check shaders and report every mistake
@@ -58,6 +60,7 @@ pub fn run() -> ExitCode {
     let result = match arguments.command {
         Command::New(args) => new::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Live(args) => live::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Check(args) => check::run(&args, false),
         Command::Compile(args) => check::run(&args, true),
