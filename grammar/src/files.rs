@@ -4,16 +4,49 @@
 //! by its name before: whoever may change a link between the look and the opening gains nothing. A file outside of the sandbox looks like
 //! one that is not there, so that no message tells whether there is one.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Which files may be read: all, or those of one folder.
 #[derive(Clone, Debug, Default)]
 pub struct Access {
     root: Option<Arc<Path>>,
+    noted: Option<Noted>,
+}
+
+/// The paths that input has named since it was made, whether there is a file or not: what a picture may depend on.
+#[derive(Clone, Debug, Default)]
+pub struct Noted(Arc<Mutex<BTreeSet<PathBuf>>>);
+
+/// So many paths are noted; those beyond are read all the same.
+const MOST_NOTED: usize = 1 << 16;
+
+impl Noted {
+    /// All paths so far, as they were named.
+    pub fn paths(&self) -> BTreeSet<PathBuf> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).len()
+    }
+
+    /// True before any is named.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn note(&self, path: &Path) {
+        let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if paths.len() < MOST_NOTED && !paths.contains(path) {
+            paths.insert(path.to_owned());
+        }
+    }
 }
 
 /// Why a file is not read.
@@ -43,7 +76,16 @@ impl Access {
         if !root.is_dir() {
             return Err(io::ErrorKind::NotADirectory.into());
         }
-        Ok(Access { root: Some(root.into()) })
+        Ok(Access { root: Some(root.into()), noted: None })
+    }
+
+    /// The same, which notes what is asked for from now on.
+    pub fn noting(&self, noted: &Noted) -> Self {
+        Access { root: self.root.clone(), noted: Some(noted.clone()) }
+    }
+
+    fn note(&self, path: &Path) {
+        self.noted.iter().for_each(|noted| noted.note(path));
     }
 
     /// The folder that everything has to lie in, if there is one.
@@ -61,6 +103,7 @@ impl Access {
 
     /// Is there a regular file that may be read?
     pub fn is_file(&self, path: &Path) -> bool {
+        self.note(path);
         path.is_file() && self.covers(path)
     }
 
@@ -84,6 +127,7 @@ impl Access {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ReadError::Missing,
             _ => ReadError::System(error),
         };
+        self.note(path);
         if !self.covers(path) {
             return Err(ReadError::Missing);
         }

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::names::named;
 use super::speak::{lost, tell};
-use super::{chart, check, info, merge, new, render, shade, tree, verify};
+use super::{chart, check, fmt, info, live, lsp, merge, new, render, shade, tree, verify};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -22,12 +22,18 @@ enum Command {
     New(new::NewArgs),
     /// Render a scene to an image
     Render(Box<render::RenderArgs>),
+    /// Show a scene or a shader on a page of this machine while it is edited
+    Live(Box<live::LiveArgs>),
     /// Merge parts of a picture, which were rendered apart
     Merge(merge::MergeArgs),
     /// Check shaders and report every mistake
     Check(check::CheckArgs),
     /// Check shaders and write .oso files that say how they are compiled, as OSL's oslc is used
     Compile(check::CheckArgs),
+    /// Lay shaders out anew: indentation and spaces
+    Fmt(fmt::FmtArgs),
+    /// Serve an editor, as a language server over standard input and output
+    Lsp(lsp::LspArgs),
     /// Show the closure tree of a shader
     Tree(tree::TreeArgs),
     /// Run shaders on a grid of points, as OSL's testshade does
@@ -54,9 +60,12 @@ pub fn run() -> ExitCode {
     let result = match arguments.command {
         Command::New(args) => new::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Live(args) => live::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Check(args) => check::run(&args, false),
         Command::Compile(args) => check::run(&args, true),
+        Command::Fmt(args) => fmt::run(&args),
+        Command::Lsp(args) => lsp::run(&args),
         Command::Tree(args) => tree::run(&args),
         Command::Shade(args) => shade::run(&args.words),
         Command::Verify(args) => verify::run(&args),

@@ -1,8 +1,9 @@
 //! What a shader declares, in the manner of oslinfo: kind, name, parameters with types, defaults and metadata.
 
-use crate::check::typed::{Expr, ExprKind, Metadata, Shader, ShaderParam, Variable};
+use crate::check::typed::{Expr, Metadata, Shader, ShaderParam, Variable};
+use crate::check::{Constant, constants};
 use crate::lang::types::{Base, Length, Type};
-use velour_grammar::ast::{ShaderKind, UnaryOp};
+use velour_grammar::ast::ShaderKind;
 use velour_grammar::json;
 
 /// The declaration of a shader as text.
@@ -75,17 +76,10 @@ fn json_metadata(metadata: &[Metadata]) -> String {
 
 /// A constant as a list; JSON has no infinities, which are then null.
 fn json_value(value: &Expr) -> String {
-    let mut parts = Vec::new();
-    match constants(value, json, &mut parts) {
-        Some(()) => {
-            parts
-                .iter_mut()
-                .filter(|part| ["inf", "-inf", "NaN"].contains(&part.as_str()))
-                .for_each(|part| *part = "null".into());
-            format!("[{}]", parts.join(","))
-        }
-        None => "null".to_owned(),
-    }
+    let Some(mut parts) = texts(value, json) else { return "null".to_owned() };
+    let none = |part: &&mut String| ["inf", "-inf", "NaN"].contains(&part.as_str());
+    parts.iter_mut().filter(none).for_each(|part| *part = "null".into());
+    format!("[{}]", parts.join(","))
 }
 
 fn param_text(shader: &Shader, param: &ShaderParam) -> String {
@@ -127,54 +121,19 @@ fn known(ty: &Type, value: &Expr) -> Option<String> {
     if ty.base() == Some(Base::Closure) {
         return Some("0".to_owned());
     }
-    let mut parts = Vec::new();
-    constants(value, |text| format!("{text:?}"), &mut parts)?;
+    let mut parts = texts(value, |text| format!("{text:?}"))?;
     let plain = parts.len() == 1 && !ty.is_array();
     Some(if plain { parts.remove(0) } else { format!("[ {} ]", parts.join(" ")) })
 }
 
-/// The numbers and strings of a constant expression, in order; strings are `quoted`.
-fn constants(value: &Expr, quoted: fn(&str) -> String, out: &mut Vec<String>) -> Option<()> {
-    match &value.kind {
-        ExprKind::Int(x) => out.push(x.to_string()),
-        ExprKind::Float(x) => out.push(float_text(*x)),
-        ExprKind::String(x) => out.push(quoted(x)),
-        ExprKind::Convert(inner) => {
-            let start = out.len();
-            constants(inner, quoted, out)?;
-            spread(&value.ty, start, out);
-        }
-        ExprKind::Unary(UnaryOp::Neg, inner) => {
-            let start = out.len();
-            constants(inner, quoted, out)?;
-            for text in &mut out[start..] {
-                *text = text.strip_prefix('-').map_or(format!("-{text}"), str::to_owned);
-            }
-        }
-        ExprKind::Construct(parts) | ExprKind::Aggregate(parts) => {
-            let start = out.len();
-            parts.iter().try_for_each(|part| constants(part, quoted, out))?;
-            spread(&value.ty, start, out);
-        }
-        ExprKind::ConstructIn(space, parts) => {
-            constants(space, quoted, out)?;
-            parts.iter().try_for_each(|part| constants(part, quoted, out))?;
-        }
-        _ => return None,
-    }
-    Some(())
-}
-
-/// A float alone stands for all components of a triple, and for the diagonal of a matrix.
-fn spread(ty: &Type, start: usize, out: &mut Vec<String>) {
-    let components = ty.base().map_or(1, Base::components);
-    if out.len() != start + 1 || components == 1 {
-        return;
-    }
-    let only = out[start].clone();
-    let at = |i: usize| if components == 3 || i.is_multiple_of(5) { only.clone() } else { "0".to_owned() };
-    out.truncate(start);
-    out.extend((0..components).map(at));
+/// The parts of a constant as texts; strings are `quoted`.
+fn texts(value: &Expr, quoted: fn(&str) -> String) -> Option<Vec<String>> {
+    let text = |part: Constant| match part {
+        Constant::Int(x) => x.to_string(),
+        Constant::Float(x) => float_text(x),
+        Constant::String(x) => quoted(&x),
+    };
+    Some(constants(value)?.into_iter().map(text).collect())
 }
 
 /// The shortest digits that give the number back, with an exponent where there would be many zeros.

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::speak::tell;
 use crate::files::Room;
 use crate::render::part::{self, Part};
-use crate::render::{Progress, Renderer, output};
+use crate::render::{Progress, Renderer, Screen, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::path::{Path, PathBuf};
@@ -112,6 +112,8 @@ pub struct Keeping<'a> {
     pub parts: bool,
     /// The part that the render goes on from.
     pub resumed: Option<&'a Path>,
+    /// How a PNG shows light.
+    pub screen: Screen,
 }
 
 impl Keeping<'_> {
@@ -192,8 +194,8 @@ impl Keeping<'_> {
         }
         let written = match &part {
             Some(part) if is_part => part::write_into(part, self.output, room),
-            Some(part) => output::write_into(&part.picture(), self.output, room),
-            None => output::write_into(&renderer.picture(), self.output, room),
+            Some(part) => output::write_into(&part.picture(), self.output, &self.screen, room),
+            None => output::write_into(&renderer.picture(), self.output, &self.screen, room),
         };
         written.map_err(failed)?;
         // A part that was written on the way, or gone on from, has done its work; one that another render has left is that one's.

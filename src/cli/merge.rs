@@ -2,6 +2,7 @@
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
+use super::screen::ScreenArgs;
 use super::speak::tell;
 use super::watch;
 use crate::render::output;
@@ -24,6 +25,8 @@ pub struct MergeArgs {
     /// Leave the sums out of an .exr: the file of a plain render, which nothing can be added to
     #[arg(long)]
     picture: bool,
+    #[command(flatten)]
+    screen: ScreenArgs,
     /// Read no file outside of this folder
     #[arg(long, value_name = "DIR")]
     sandbox: Option<PathBuf>,
@@ -72,7 +75,7 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let Some(part) = merged else { return Ok(()) };
     complete(args, &part)?;
     let written = if args.picture || format != output::Format::Exr {
-        output::write(&part.picture(), &args.output)
+        output::write_as(&part.picture(), &args.output, &args.screen.screen())
     } else {
         part::write(&part, &args.output)
     };

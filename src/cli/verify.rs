@@ -10,7 +10,7 @@ use crate::closure::{Layering, Settings};
 use crate::compile::{Compiler, GroupError, Shader};
 use crate::limits::SHADER_BYTES;
 use crate::measure::verify::{
-    Check, ClosureSubject, Effort, Finding, Line, Report, ShaderSubject, Subject, Verdict, cannot_run, verify,
+    ClosureSubject, Effort, Line, Report, ShaderSubject, Subject, Verdict, cannot_run, verify,
 };
 use crate::scene::nearest;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -167,7 +167,7 @@ fn unknown(compiler: &Compiler, name: &str) -> String {
 /// The findings in columns, one a line.
 fn table(lines: &[Line]) -> String {
     let head = ["subject", "check", "worst", "bound", "verdict", "where"].map(str::to_owned);
-    let rows: Vec<[String; 6]> = std::iter::once(head).chain(lines.iter().map(row)).collect();
+    let rows: Vec<[String; 6]> = std::iter::once(head).chain(lines.iter().map(Line::cells)).collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; 5] = std::array::from_fn(width);
     let mut out = String::new();
@@ -181,32 +181,6 @@ fn table(lines: &[Line]) -> String {
         out.push('\n');
     }
     out
-}
-
-fn row(line: &Line) -> [String; 6] {
-    let Finding { check, verdict, place, note, bound, .. } = &line.finding;
-    let parts = [place.as_str(), line.label.as_str()].into_iter().filter(|part| !part.is_empty());
-    let place = parts.collect::<Vec<_>>().join("; ");
-    let place = match (note.is_empty(), place.is_empty()) {
-        (true, _) => place,
-        (_, true) => note.clone(),
-        _ => format!("{place}: {note}"),
-    };
-    [line.subject.clone(), check.to_string(), figure(&line.finding), bound.clone(), verdict.to_string(), place]
-}
-
-fn figure(finding: &Finding) -> String {
-    let value = finding.value;
-    match finding.check {
-        Check::Scatters => "-".to_owned(),
-        Check::Finite => format!("{value}"),
-        Check::Energy => format!("{value:.5}"),
-        Check::ChiSquare if value >= 1e-3 => format!("p = {value:.3}"),
-        Check::ChiSquare => format!("p = {value:.1e}"),
-        Check::Density | Check::Coverage => format!("{value:.4}"),
-        Check::Albedo => format!("{value:+.4}"),
-        Check::Weight | Check::Reciprocity => format!("{value:.1e}"),
-    }
 }
 
 /// What was done and how it ended, in a line.

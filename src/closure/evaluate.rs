@@ -7,6 +7,7 @@ use super::source::Triples;
 use super::store::NONE;
 use crate::math::columns::Column3;
 use glam::Vec3;
+use std::ops::Range;
 
 /// f cos and density of one direction a lane.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,6 +20,11 @@ pub struct Evaluation {
 
 /// See [`super::Lobes::evaluate`].
 pub fn evaluate(flat: &mut Flat, wi: &Column3, out: &mut Evaluation) {
+    evaluate_some(flat, 0..flat.lobes.len(), wi, out);
+}
+
+/// The same for lobes of these numbers alone.
+pub fn evaluate_some(flat: &mut Flat, numbers: Range<usize>, wi: &Column3, out: &mut Evaluation) {
     let n = flat.lanes;
     for column in [&mut out.f_cos.x, &mut out.f_cos.y, &mut out.f_cos.z, &mut out.pdf] {
         column.clear();
@@ -29,7 +35,8 @@ pub fn evaluate(flat: &mut Flat, wi: &Column3, out: &mut Evaluation) {
     flat.coats.light(flat.models.frames(), wi);
     flat.models.localise(&flat.coats, wi);
     flat.layers.scale(&flat.models, &flat.coats, &flat.ones);
-    for (index, &lobe) in flat.lobes.iter().enumerate() {
+    for index in numbers {
+        let lobe = flat.lobes[index];
         let model = &flat.models.list[lobe.model as usize];
         let (Some(loops), Some(frame)) = (model.kind.loops(), flat.models.frame_of(model)) else { continue };
         let by_lobe = flat.layers.scales_by_lobe(lobe.layer);

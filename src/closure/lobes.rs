@@ -1,6 +1,6 @@
 //! The lobes of a batch: what a closure tree scatters, ready to be evaluated and sampled for all lanes at once.
 
-use super::evaluate::{Evaluation, evaluate, straight};
+use super::evaluate::{Evaluation, evaluate, evaluate_some, straight};
 use super::flat::{Dropped, Flat, LeftOut};
 use super::flatten::{Sweep, flatten};
 use super::layering::{Toward, covering_albedo};
@@ -14,6 +14,8 @@ use crate::math::columns::Column3;
 /// One lobe of one lane, for people to read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LobeInfo {
+    /// Its number in the batch, below [`Lobes::len`].
+    pub number: usize,
     /// The closure it came from.
     pub closure: &'static str,
     /// Its weight, without the scale of layers.
@@ -118,6 +120,13 @@ impl Lobes {
         evaluate(&mut self.flat, wi, out);
     }
 
+    /// Evaluates one lobe, by its number, with the layers over it; what it takes from the density is its share. Nothing for a number
+    /// that there is not.
+    pub fn evaluate_one(&mut self, number: usize, wi: &Column3, out: &mut Evaluation) {
+        let end = self.len().min(number.saturating_add(1));
+        evaluate_some(&mut self.flat, number.min(end)..end, wi, out);
+    }
+
     /// Samples one direction a lane from three numbers in [0, 1) a lane.
     pub fn sample(&mut self, xi: &Column3, out: &mut Samples) {
         self.sampler.sample(&mut self.flat, xi, out);
@@ -142,6 +151,7 @@ impl Lobes {
             let model = flat.model(lobe);
             covering_albedo(&flat.models, model, Toward::View, &mut albedo);
             infos.push(LobeInfo {
+                number: index,
                 closure: model.closure,
                 weight,
                 albedo: albedo[lane],

@@ -1,6 +1,6 @@
-//! What shaders say at one pixel, in the order in which they say it.
+//! What the shaders of one pixel say and make, in the order in which they say it.
 
-use super::accel::{NOTHING, Ray};
+use super::accel::{Hit, NOTHING, Ray};
 use super::host::host;
 use super::points::{fill, fill_sky};
 use super::renderer::Renderer;
@@ -13,25 +13,31 @@ impl Renderer {
     /// shows nothing. No light is followed on from there.
     pub fn pixel_reports(&self, x: u32, y: u32) -> Vec<Report> {
         let world = self.world();
-        let direction = world.camera.direction(x as f32 + 0.5, y as f32 + 0.5);
-        let (eye, spread) = (world.camera.eye(), world.camera.spread(direction));
-        let mut hits = Vec::new();
-        world.accel.closest(&[Ray::new(eye, direction)], &mut hits);
         // One point is soon done, also of a render that was stopped.
         let host = host(&world.scene.camera, &world.settings, &world.scene.textures, Some(world.accel.clone()));
         let mut machine = Machine::with_host(Arc::new(host));
+        let (material, points) = self.point_of(x, y);
+        if let Some(material) = material {
+            machine.shade(&world.scene.materials[material].surface, &points);
+        }
+        machine.take_reports()
+    }
+
+    /// The material that the center of a pixel shows, that of the background included, and the point that is shaded.
+    pub(super) fn point_of(&self, x: u32, y: u32) -> (Option<usize>, Points) {
+        let world = self.world();
+        let direction = world.camera.direction(x as f32 + 0.5, y as f32 + 0.5);
+        let (eye, spread) = (world.camera.eye(), world.camera.spread(direction));
+        let mut hits: Vec<Hit> = Vec::new();
+        world.accel.closest(&[Ray::new(eye, direction)], &mut hits);
         let mut points = Points::new(1);
         let Some(hit) = hits.first().copied().filter(|hit| hit.primitive != NOTHING) else {
-            if let Some(background) = world.scene.background {
-                fill_sky(&mut points, 0, direction, ray_type::CAMERA);
-                machine.shade(&world.scene.materials[background.material as usize].surface, &points);
-            }
-            return machine.take_reports();
+            fill_sky(&mut points, 0, direction, ray_type::CAMERA);
+            return (world.scene.background.map(|background| background.material as usize), points);
         };
-        let (group, plan) = world.material(world.material_of(hit.primitive));
+        let material = world.material_of(hit.primitive);
         let segment = Segment { origin: eye, direction, hit, width: 0.0, spread, ray_type: ray_type::CAMERA };
-        fill(&mut points, &world.scene.geometry, [&segment].into_iter(), &plan.needs);
-        machine.shade(group, &points);
-        machine.take_reports()
+        fill(&mut points, &world.scene.geometry, [&segment].into_iter(), &world.material(material).1.needs);
+        (Some(material), points)
     }
 }

@@ -1,5 +1,6 @@
 //! Why a scene cannot be rendered, or its picture not written; what a user may get wrong has a stable code.
 
+use crate::limits::FRAME_SIDE;
 use crate::scene::CameraFlaw;
 use std::fmt;
 use std::path::PathBuf;
@@ -25,6 +26,8 @@ pub enum SettingsError {
     Batches,
     /// R0106: a render that stops by noise or time and does not begin with its first sample.
     First,
+    /// R0107: a picture that is not inside of its frame.
+    Frame,
 }
 
 /// What keeps a scene from being rendered.
@@ -104,6 +107,7 @@ impl SettingsError {
             SettingsError::Seconds => "R0104",
             SettingsError::Batches => "R0105",
             SettingsError::First => "R0106",
+            SettingsError::Frame => "R0107",
         }
     }
 }
@@ -119,6 +123,9 @@ impl fmt::Display for SettingsError {
             SettingsError::Seconds => f.write_str("the time to stop at must be a number of seconds above 0"),
             SettingsError::Batches => f.write_str("tile size, wave size and batch width must be above 0"),
             SettingsError::First => f.write_str("a render that stops by noise or time begins with sample 0"),
+            SettingsError::Frame => {
+                write!(f, "a picture must lie in its frame, which has {FRAME_SIDE} pixels a side at most")
+            }
         }
     }
 }

@@ -3,10 +3,9 @@
 use super::error::OutputError;
 use super::image::Image;
 use super::settings::Settings;
+use super::view::Screen;
 use crate::files::{Destination, Room, Sink};
-use crate::math::elementary::pow;
 use exr::prelude as exr;
-use rayon::prelude::*;
 use std::io::Write;
 use std::path::Path;
 
@@ -16,7 +15,7 @@ use std::path::Path;
 pub enum Format {
     /// OpenEXR, linear, 32-bit floats.
     Exr,
-    /// PNG, 8 bits, sRGB.
+    /// PNG, 8 bits, by a [`Screen`].
     Png,
     /// Radiance HDR, linear, shared exponent.
     Hdr,
@@ -28,17 +27,22 @@ pub fn check(path: &Path) -> Result<Format, OutputError> {
     look(path).map(|(format, _)| format)
 }
 
-/// Writes `image` to `path` in the format of its extension.
+/// Writes `image` to `path` in the format of its extension; a PNG by the default [`Screen`].
 pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
-    write_into(image, path, None)
+    write_as(image, path, &Screen::default())
+}
+
+/// The same, for a screen of its own where it is a PNG; the other formats keep linear light as it is.
+pub fn write_as(image: &Image, path: &Path, screen: &Screen) -> Result<(), OutputError> {
+    write_into(image, path, screen, None)
 }
 
 /// The same, into room that is held for it.
-pub fn write_into(image: &Image, path: &Path, room: Option<Room>) -> Result<(), OutputError> {
+pub fn write_into(image: &Image, path: &Path, screen: &Screen, room: Option<Room>) -> Result<(), OutputError> {
     let format = check(path)?;
     write_with(path, room, |sink| match format {
         Format::Exr => write_exr(image, sink),
-        Format::Png => write_png(image, sink),
+        Format::Png => write_png(image, screen, sink),
         Format::Hdr => write_hdr(image, sink),
     })
 }
@@ -207,31 +211,11 @@ fn note(image: &Image) -> String {
     format!("scene={} samples={samples}{noise} seed={} velour={version}", about.scene, about.seed)
 }
 
-fn write_png(image: &Image, writer: &mut impl Write) -> Result<(), String> {
+fn write_png(image: &Image, screen: &Screen, writer: &mut impl Write) -> Result<(), String> {
     use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
-    let color = |c: f32| (srgb(c) * 255.0 + 0.5) as u8;
-    let encode = |pixel: &[f32]| -> [u8; 4] {
-        let alpha = pixel.get(3).map_or(1.0, |a| a.clamp(0.0, 1.0));
-        // PNG keeps colour apart from alpha; the render has them multiplied.
-        let scale = if alpha > 0.0 { 1.0 / alpha } else { 0.0 };
-        [color(pixel[0] * scale), color(pixel[1] * scale), color(pixel[2] * scale), (alpha * 255.0 + 0.5) as u8]
-    };
-    let channels = image.channels;
-    let mut bytes = vec![0; image.pixels.len()];
-    let both = bytes.par_chunks_mut(channels << 12).zip(image.pixels.par_chunks(channels << 12));
-    both.for_each(|(bytes, pixels)| {
-        for (bytes, pixel) in bytes.chunks_exact_mut(channels).zip(pixels.chunks_exact(channels)) {
-            bytes.copy_from_slice(&encode(pixel)[..channels]);
-        }
-    });
-    let kind = if channels == 4 { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
+    let bytes = screen.bytes(image);
+    let kind = if image.channels == 4 { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
     PngEncoder::new(writer).write_image(&bytes, image.width, image.height, kind).map_err(|e| e.to_string())
-}
-
-/// The transfer curve of IEC 61966-2-1, clipped to [0, 1].
-pub(crate) fn srgb(linear: f32) -> f32 {
-    let x = linear.clamp(0.0, 1.0);
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * pow(x, 1.0 / 2.4) - 0.055 }
 }
 
 fn write_hdr(image: &Image, writer: &mut impl Write) -> Result<(), String> {

@@ -3,14 +3,14 @@
 use super::accel::Accel;
 use super::displace::displaced;
 use super::error::RenderError;
-use super::film::Film;
+use super::gathered::Gathered;
 use super::image::{About, Image};
 use super::part::{Part, PartError, Whole, counts, fingerprint};
 use super::path::Dropped;
 use super::plan::Plan;
 use super::pool::Threads;
 use super::progress::Progress;
-use super::rounds::{Rounds, Task};
+use super::rounds::Task;
 use super::settings::Settings;
 use super::sky::Sky;
 use super::stop::Stop;
@@ -68,55 +68,6 @@ pub struct Renderer {
     fingerprint: OnceLock<u64>,
 }
 
-/// What the threads put together.
-struct Gathered {
-    film: Film,
-    rounds: Rounds,
-    dropped: Dropped,
-    /// Camera samples that were traced here.
-    paths: u64,
-    rays: u64,
-    reports: Vec<Report>,
-    seconds_tracing: f64,
-}
-
-impl Gathered {
-    /// Nothing yet, but what was said while the world was made.
-    fn new(world: &World) -> Self {
-        Gathered {
-            film: Film::new(&world.settings),
-            rounds: Rounds::new(&world.settings, world.stop.clone()),
-            dropped: Dropped::default(),
-            paths: 0,
-            rays: 0,
-            reports: world.reports.clone(),
-            seconds_tracing: 0.0,
-        }
-    }
-
-    /// Takes in what a thread has found out of one tile.
-    fn keep(&mut self, settings: &Settings, task: &Task, wave: &mut Wave) {
-        self.rounds.done(task);
-        let pixels = Tile::number(settings, task.tile).pixels();
-        self.paths += u64::from(pixels) * u64::from(task.end - task.first);
-        self.dropped.merge(&std::mem::take(&mut wave.dropped));
-        self.rays += std::mem::take(&mut wave.traced);
-        self.reports.extend(wave.shading.take_reports());
-    }
-
-    /// Is there anything at all when the time is up?
-    fn check_time(&self) -> Result<(), RenderError> {
-        let nothing = self.rounds.late() && self.rounds.taken().all(|samples| samples == 0);
-        if nothing { Err(RenderError::Late) } else { Ok(()) }
-    }
-
-    /// The first report that a shader cannot be run.
-    fn check(&self) -> Result<(), RenderError> {
-        let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
-        self.reports.iter().find_map(fatal).map_or(Ok(()), Err)
-    }
-}
-
 impl fmt::Debug for Renderer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Renderer").field("scene", &self.world.scene.name).finish_non_exhaustive()
@@ -144,7 +95,12 @@ impl Renderer {
             Ok((world, reports))
         };
         let (world, said_moving) = pool.install(make)?;
-        Ok(Renderer {
+        Ok(Self::of_world(world, pool, said_moving, start))
+    }
+
+    /// Nothing is rendered yet of a world that was begun at `start`.
+    fn of_world(world: World, pool: Threads, said_moving: Vec<Report>, start: Instant) -> Self {
+        Renderer {
             waves: empty_waves(&pool),
             gathered: Mutex::new(Gathered::new(&world)),
             said_moving,
@@ -152,7 +108,23 @@ impl Renderer {
             fingerprint: OnceLock::new(),
             world,
             pool,
-        })
+        }
+    }
+
+    /// Another renderer of the scene as it is now, over the same hierarchy.
+    ///
+    /// # Errors
+    /// The settings cannot be rendered by.
+    pub fn beside(&self, settings: &Settings) -> Result<Self, RenderError> {
+        let start = Instant::now();
+        settings.check().map_err(RenderError::Settings)?;
+        let pool = Threads::new(settings.threads)?;
+        let stop = Arc::new(Stop::new(Arc::default()));
+        stop.begin(settings, start);
+        let (accel, scene) = (self.world.accel.clone(), self.world.scene.clone());
+        let mut world = pool.install(|| World::new(accel, scene, settings.clone(), None, stop));
+        world.reports.extend(self.said_moving.iter().cloned());
+        Ok(Self::of_world(world, pool, self.said_moving.clone(), start))
     }
 
     /// The scene as it is rendered now.
@@ -412,11 +384,19 @@ impl Renderer {
     /// What depends on the group is renewed: the plan, emission, lights, the background and its table if they are of this
     /// material.
     pub fn set_material(&mut self, index: usize, group: Group) -> Result<(), RenderError> {
+        self.set_materials(vec![(index, group)])
+    }
+
+    /// The same for several materials at once, by their indices.
+    pub fn set_materials(&mut self, groups: Vec<(usize, Group)>) -> Result<(), RenderError> {
         let mut scene = self.world.scene.clone();
         let count = scene.materials.len();
-        let material = scene.materials.get_mut(index).ok_or(RenderError::Material { index, count })?;
-        material.surface = group;
-        let of_background = scene.background.is_some_and(|background| background.material as usize == index);
+        let mut of_background = false;
+        for (index, group) in groups {
+            let material = scene.materials.get_mut(index).ok_or(RenderError::Material { index, count })?;
+            material.surface = group;
+            of_background |= scene.background.is_some_and(|background| background.material as usize == index);
+        }
         // A constant is found anew at once; it is the table that is worth keeping.
         let ready = self.world.ready;
         let sky = match &mut self.world.sky {

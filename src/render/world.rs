@@ -5,10 +5,11 @@ use super::camera::RayCamera;
 use super::light::Lights;
 use super::plan::{MaterialPlan, Plan};
 use super::radiance;
-use super::settings::Settings;
+use super::settings::{Filter, Settings};
 use super::shading::Shading;
 use super::sky::Sky;
 use super::stop::Stop;
+use super::window::Window;
 use crate::exec::{Group, Host, Report};
 use crate::scene::Scene;
 use glam::Vec3;
@@ -24,6 +25,8 @@ pub struct World {
     pub plan: Plan,
     /// The camera.
     pub camera: RayCamera,
+    /// Where samples go around their pixels, when not evenly into them.
+    pub window: Option<Window>,
     /// The hierarchy, which depends on the scene's geometry alone.
     pub accel: Arc<Accel>,
     /// The lights.
@@ -59,7 +62,8 @@ impl World {
             (constant, powers, sky)
         });
         World {
-            camera: RayCamera::new(&scene.camera, settings.width, settings.height),
+            camera: RayCamera::new(&scene.camera, settings.whole_frame().size),
+            window: (settings.filter == Filter::BlackmanHarris && settings.jitter).then(Window::new),
             accel,
             stop,
             lights: Lights::new(&scene.geometry, &powers, settings.light_choice, settings.light_points),

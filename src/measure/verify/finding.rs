@@ -98,6 +98,38 @@ pub struct Line {
     pub variants: usize,
 }
 
+impl Finding {
+    /// The figure as people read it.
+    pub fn figure(&self) -> String {
+        let value = self.value;
+        match self.check {
+            Check::Scatters => "-".to_owned(),
+            Check::Finite => format!("{value}"),
+            Check::Energy => format!("{value:.5}"),
+            Check::ChiSquare if value >= 1e-3 => format!("p = {value:.3}"),
+            Check::ChiSquare => format!("p = {value:.1e}"),
+            Check::Density | Check::Coverage => format!("{value:.4}"),
+            Check::Albedo => format!("{value:+.4}"),
+            Check::Weight | Check::Reciprocity => format!("{value:.1e}"),
+        }
+    }
+}
+
+impl Line {
+    /// The line as cells of a table: subject, check, worst figure, bound, verdict, and where it was seen with what else there is to say.
+    pub fn cells(&self) -> [String; 6] {
+        let Finding { check, verdict, place, note, bound, .. } = &self.finding;
+        let parts = [place.as_str(), self.label.as_str()].into_iter().filter(|part| !part.is_empty());
+        let place = parts.collect::<Vec<_>>().join("; ");
+        let place = match (note.is_empty(), place.is_empty()) {
+            (true, _) => place,
+            (_, true) => note.clone(),
+            _ => format!("{place}: {note}"),
+        };
+        [self.subject.clone(), check.to_string(), self.finding.figure(), bound.clone(), verdict.to_string(), place]
+    }
+}
+
 /// All findings of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Report {

@@ -21,6 +21,7 @@ pub fn fingerprint(scene: &Scene, settings: &Settings) -> u64 {
     let _ = write!(digest, "{:?} {:?}", scene.camera, scene.background);
     let Settings { width, height, seed, max_bounces, rr_depth, jitter, alpha, .. } = *settings;
     let _ = write!(digest, "{:?}", (width, height, seed, max_bounces, rr_depth, jitter, alpha));
+    let _ = write!(digest, "{:?}", (settings.frame, settings.filter));
     let Settings { lights, light_choice, light_points, terminator, show_globals, closure, .. } = *settings;
     let _ = write!(digest, "{:?}", (lights, light_choice, light_points, terminator, show_globals, closure));
     for material in &scene.materials {

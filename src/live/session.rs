@@ -1,0 +1,440 @@
+//! The session: one thread that sees to wishes, and renders in between.
+
+use super::board::Board;
+use super::controls::{controls, label};
+use super::frame::Frame;
+use super::inbox::{Inbox, Knob, Wish};
+use super::pixel::{DIRECTIONS, pixel};
+use super::source::Source;
+use super::stages::Stages;
+use super::subject::{Overrides, Subject};
+use super::trial::Trial;
+use super::values::Given;
+use super::watch::Watched;
+use crate::exec::Report;
+use crate::limits::{PRINTED, PRINTED_BYTES};
+use crate::render::{Image, Progress, RenderError, Settings};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+/// Quiet time after a file has changed: editors write more than once.
+const QUIET: Duration = Duration::from_millis(4);
+
+/// The longest time to wait for that.
+const RESTLESS: Duration = Duration::from_millis(40);
+
+/// How long a file that has gone, or has nothing in it, may be on its way back.
+const BACK: Duration = Duration::from_millis(60);
+
+/// Seconds from one picture to the next.
+const PACE: f64 = 0.15;
+
+/// Samples of each pixel in a round, at most.
+const MOST_AT_ONCE: u32 = 32;
+
+/// What is rendered, and how it stands.
+enum Work {
+    /// A coarse picture, then the whole one.
+    Coarse,
+    /// The whole picture.
+    Whole,
+    /// Nothing is left to do, or nothing can be done before something changes.
+    None,
+}
+
+/// Everything that the thread of a session holds.
+pub struct Session {
+    source: Source,
+    settings: Settings,
+    resolution: Option<[u32; 2]>,
+    inbox: Arc<Inbox>,
+    board: Arc<Board>,
+    watched: Watched,
+    trial: Trial,
+    subject: Option<Subject>,
+    stages: Option<Stages>,
+    overrides: Overrides,
+    exposure: f32,
+    image: Option<Image>,
+    work: Work,
+    /// Groups whose text or values have changed and that do not compile yet.
+    dirty: BTreeSet<usize>,
+    /// All is to be loaded anew.
+    reload: bool,
+    /// What is wrong.
+    trouble: Option<String>,
+    /// How many changes there were.
+    change: u64,
+    /// When the last one came, until its first picture is there.
+    since: Option<Instant>,
+    /// Milliseconds from the last change to its first picture.
+    waited: Option<f64>,
+    followed: usize,
+    /// When the last picture was put up.
+    shown: Instant,
+}
+
+/// Ends a round when there is a wish.
+struct Interrupt<'a>(&'a Inbox);
+
+impl Progress for Interrupt<'_> {
+    fn tiles(&self, _done: usize, _total: usize) {}
+
+    fn cancelled(&self) -> bool {
+        self.0.waiting()
+    }
+}
+
+impl Session {
+    /// A session that has loaded nothing yet. `resolution` goes before what the scene states.
+    pub fn new(
+        source: Source,
+        settings: Settings,
+        resolution: Option<[u32; 2]>,
+        (inbox, board, watched): (Arc<Inbox>, Arc<Board>, Watched),
+    ) -> Self {
+        Session {
+            source,
+            settings,
+            resolution,
+            inbox,
+            board,
+            watched,
+            trial: Trial::default(),
+            subject: None,
+            stages: None,
+            overrides: Overrides::new(),
+            exposure: 0.0,
+            image: None,
+            work: Work::None,
+            dirty: BTreeSet::new(),
+            reload: true,
+            trouble: None,
+            change: 0,
+            since: Some(Instant::now()),
+            waited: None,
+            followed: 0,
+            shown: Instant::now(),
+        }
+    }
+
+    /// Runs until it is asked to close.
+    pub fn run(mut self) {
+        loop {
+            let (wishes, since) = self.inbox.take();
+            if !self.see_to(wishes, since) {
+                return;
+            }
+            let idle = matches!(self.work, Work::None) || !(self.since.is_some() || self.board.watched());
+            if idle {
+                // Whoever comes to see rings, and may do so a moment too early.
+                let unseen = !matches!(self.work, Work::None);
+                self.inbox.wait(Duration::from_secs(if unseen { 1 } else { 3600 }));
+            } else {
+                self.advance();
+            }
+        }
+    }
+
+    /// Sees to wishes; false when one of them is to close.
+    fn see_to(&mut self, wishes: Vec<Wish>, since: Instant) -> bool {
+        let (mut changed, mut looks) = (BTreeSet::new(), Vec::new());
+        for wish in wishes {
+            match wish {
+                Wish::Close => return false,
+                Wish::Changed(path) => drop(changed.insert(path)),
+                Wish::Set(knob, given) => self.set(knob, given),
+                Wish::Reset => {
+                    self.dirty.extend(self.overrides.keys().map(|knob| knob.group));
+                    self.overrides.clear();
+                }
+                Wish::Exposure(stops) => {
+                    self.exposure = stops;
+                    let frame = self.image.as_ref().map(|image| Frame::of(image, stops));
+                    self.board.publish([("exposure", json!(stops))], frame);
+                }
+                Wish::Verify(group) => {
+                    if let Some(subject) = &self.subject {
+                        self.trial.begin(subject, group, &self.overrides, self.settings.closure, &self.board);
+                    }
+                }
+                Wish::Look(at, answer) => looks.push((at, answer)),
+                Wish::Watch => {}
+            }
+        }
+        if !changed.is_empty() {
+            self.note_changes(changed);
+        }
+        if self.reload || !self.dirty.is_empty() {
+            self.since.get_or_insert(since);
+            self.renew();
+        }
+        looks.into_iter().for_each(|(at, answer)| self.look(at, &answer));
+        true
+    }
+
+    /// Gives a parameter a value, if it is there and the value fits.
+    fn set(&mut self, knob: Knob, given: Option<Given>) {
+        let fits = |given: &Given| self.subject.as_ref().is_some_and(|subject| subject.fits(&knob, given));
+        match given {
+            Some(given) if fits(&given) => {
+                self.dirty.insert(knob.group);
+                self.overrides.insert(knob, given);
+            }
+            Some(_) => {}
+            None => {
+                if self.overrides.remove(&knob).is_some() {
+                    self.dirty.insert(knob.group);
+                }
+            }
+        }
+    }
+
+    /// Waits until the files are quiet, and finds out what they are to the picture.
+    fn note_changes(&mut self, mut changed: BTreeSet<PathBuf>) {
+        let begin = Instant::now();
+        let mut later = Vec::new();
+        let mut collect = |changed: &mut BTreeSet<PathBuf>| {
+            for wish in self.inbox.take().0 {
+                match wish {
+                    Wish::Changed(path) => drop(changed.insert(path)),
+                    other => later.push(other),
+                }
+            }
+        };
+        while self.inbox.wait(QUIET) && begin.elapsed() < RESTLESS {
+            collect(&mut changed);
+        }
+        let empty = |path: &PathBuf| std::fs::metadata(path).map_or(true, |about| about.len() == 0);
+        let mut away = changed.iter().any(empty);
+        while away && begin.elapsed() < BACK {
+            self.inbox.wait(BACK.saturating_sub(begin.elapsed()));
+            collect(&mut changed);
+            away = changed.iter().any(empty);
+        }
+        later.into_iter().for_each(|wish| self.inbox.push(wish));
+        let groups = self.subject.as_ref().and_then(|subject| subject.affected(&changed));
+        match groups {
+            Some(groups) => self.dirty.extend(groups),
+            // Something else than a text of a shader, or what an error asks for.
+            None if self.dirty.is_empty() || self.trouble.is_none() => self.reload = true,
+            None => {}
+        }
+    }
+
+    /// Loads or compiles what has changed, and begins the picture anew.
+    fn renew(&mut self) {
+        let moves = self.subject.as_ref().is_some_and(|subject| self.dirty.iter().any(|&k| subject.moves(k)));
+        self.change += 1;
+        let renewed = if self.reload || moves || self.subject.is_none() { self.load() } else { self.compile() };
+        match renewed {
+            Ok(()) => {
+                self.trouble = None;
+                self.begin();
+            }
+            Err(text) => self.fail(text),
+        }
+        self.follow();
+    }
+
+    fn load(&mut self) -> Result<(), String> {
+        self.reload = true;
+        self.board.publish([("status", self.status("loading"))], None);
+        let subject = match self.source.load(self.subject.as_ref(), &mut self.overrides) {
+            Ok(subject) => subject,
+            Err((text, noted)) => {
+                // What a mended text needs is watched as well as what the last good one needed.
+                let mut paths = noted.paths();
+                paths.extend(self.subject.iter().flat_map(Subject::paths));
+                self.watched.follow(&paths, true);
+                return Err(text);
+            }
+        };
+        (self.reload, self.dirty) = (false, BTreeSet::new());
+        let mut settings = self.settings.clone().with_options(&subject.scene.options);
+        if let Some([width, height]) = self.resolution.or(subject.scene.options.resolution) {
+            (settings.width, settings.height) = (width, height);
+        }
+        let rate = self.stages.as_ref().map(Stages::rate);
+        // The old one goes first: a large scene need not fit twice.
+        (self.stages, self.work) = (None, Work::None);
+        let stages = Stages::new(&subject.scene, &settings, rate).map_err(|error| worded(&error));
+        self.subject = Some(subject);
+        self.put_controls();
+        self.stages = Some(stages?);
+        Ok(())
+    }
+
+    fn compile(&mut self) -> Result<(), String> {
+        let Some(subject) = &mut self.subject else { return Ok(()) };
+        let renewed = subject.compile(&self.source, &self.dirty, &mut self.overrides)?;
+        let groups = subject.take(&self.source, renewed);
+        self.dirty.clear();
+        self.put_controls();
+        self.stages.iter_mut().for_each(|stages| stages.change(groups.clone()));
+        Ok(())
+    }
+
+    fn put_controls(&self) {
+        if let Some(subject) = &self.subject {
+            self.board.publish([("controls", controls(subject, &self.overrides))], None);
+        }
+    }
+
+    /// Begins the picture anew.
+    fn begin(&mut self) {
+        let Some(stages) = &mut self.stages else { return };
+        let begun = stages.begin();
+        self.inbox.stops(stages.stops());
+        self.work = if stages.divisor() > 1 { Work::Coarse } else { Work::Whole };
+        if let Err(error) = begun {
+            return self.fail(worded(&error));
+        }
+        self.board.publish([("status", self.status("rendering"))], None);
+    }
+
+    /// Says what is wrong; the picture stays as it is.
+    fn fail(&mut self, text: String) {
+        self.work = Work::None;
+        self.trouble = Some(text);
+        self.watched.any(true);
+        self.since = None;
+        self.board.publish([("status", self.status("wrong"))], None);
+    }
+
+    /// Watches what has been read since.
+    fn follow(&mut self) {
+        let Some(subject) = &self.subject else { return };
+        let count = subject.path_count();
+        if count != self.followed && self.trouble.is_none() {
+            self.watched.follow(&subject.paths(), false);
+            self.followed = count;
+        } else if self.trouble.is_none() {
+            self.watched.any(false);
+        }
+    }
+
+    /// Renders a round and shows what there is.
+    fn advance(&mut self) {
+        let Some(stages) = &mut self.stages else {
+            self.work = Work::None;
+            return;
+        };
+        let coarse = matches!(self.work, Work::Coarse);
+        let pixels: u64 = stages.size().iter().map(|&side| u64::from(side)).product();
+        let fast = (PACE * stages.rate() / pixels as f64) as u32;
+        let before = stages.renderer().taken()[0];
+        let samples = if coarse || before == 0 { 1 } else { fast.clamp(1, MOST_AT_ONCE) };
+        let (paths, start) = (stages.renderer().about().paths, Instant::now());
+        let outcome = stages.renderer().round_of(samples, &Interrupt(&self.inbox));
+        let paths = stages.renderer().about().paths - paths;
+        stages.timed(paths, start.elapsed().as_secs_f64());
+        let left = match outcome {
+            Ok(left) => left,
+            Err(error) => return self.fail(worded(&error)),
+        };
+        let taken = stages.renderer().taken();
+        // The first picture of a size is shown at once, later ones now and then.
+        let due = before == 0 || !left || self.shown.elapsed().as_secs_f64() >= PACE;
+        if taken[0] == 0 || !due {
+            return;
+        }
+        let image = stages.renderer().picture();
+        if coarse {
+            self.work = Work::Whole;
+        } else if !left {
+            self.work = Work::None;
+        }
+        self.show(image, coarse);
+        if coarse
+            && let Some(stages) = &mut self.stages
+            && let Err(error) = stages.refine()
+        {
+            self.fail(worded(&error));
+        }
+        self.follow();
+    }
+
+    /// Puts a picture up.
+    fn show(&mut self, image: Image, coarse: bool) {
+        if let Some(since) = self.since.take() {
+            self.waited = Some(since.elapsed().as_secs_f64() * 1e3);
+        }
+        self.shown = Instant::now();
+        let frame = Frame::of(&image, self.exposure);
+        let size = self.stages.as_ref().map_or([image.width, image.height], Stages::size);
+        let about = &image.about;
+        let picture = json!({
+            "width": frame.width,
+            "height": frame.height,
+            "whole": size,
+            "coarse": coarse,
+            "samples": about.taken,
+            "error": about.noise,
+            "goal": self.settings.noise,
+            "seconds": about.seconds_tracing,
+            "change": self.change,
+            "waited": self.waited,
+        });
+        self.image = Some(image);
+        let state = if matches!(self.work, Work::None) { "done" } else { "rendering" };
+        self.board.publish([("picture", picture), ("status", self.status(state))], Some(frame));
+    }
+
+    /// How it stands: `loading`, `rendering`, `done` or `wrong`, with all there is to say.
+    fn status(&self, state: &str) -> Value {
+        let scene = self.subject.iter().flat_map(|subject| subject.scene.warnings.iter().cloned());
+        let remarks = self.subject.iter().map(|subject| subject.remarks.clone()).filter(|text| !text.is_empty());
+        let reports = self.image.iter().flat_map(|image| &image.about.reports).map(Report::to_string);
+        let (mut bytes, mut notes) = (0, Vec::new());
+        for note in remarks.chain(scene).chain(reports).take(PRINTED) {
+            bytes += note.len();
+            if bytes > PRINTED_BYTES / 16 {
+                break;
+            }
+            notes.push(note);
+        }
+        json!({
+            "state": state,
+            "change": self.change,
+            "file": self.source.argument.chars().take(300).collect::<String>(),
+            "trouble": self.trouble,
+            "notes": notes,
+            "set": self.overrides.len(),
+        })
+    }
+
+    /// Looks at a pixel of the whole picture.
+    fn look(&mut self, [x, y]: [u32; 2], answer: &Sender<Value>) {
+        let (Some(subject), Some(stages)) = (&self.subject, &mut self.stages) else { return };
+        let [width, height] = stages.size();
+        if x >= width || y >= height || self.trouble.is_some() {
+            let _ = answer.send(json!({"x": x, "y": y, "trouble": self.trouble.is_some()}));
+            return;
+        }
+        let divisor = stages.divisor();
+        let renderer = stages.renderer();
+        let inside = [x / divisor, y / divisor];
+        let value = match renderer.look(inside[0], inside[1], DIRECTIONS) {
+            Some(look) => {
+                let group = subject.group_of(look.material).map(|group| (group, label(subject, group)));
+                pixel(&look, [x, y], group)
+            }
+            None => json!({"x": x, "y": y, "nothing": true}),
+        };
+        // Whoever has asked may have gone.
+        let _ = answer.send(value);
+    }
+}
+
+/// What keeps a scene from being rendered; a shader's own message begins with its place.
+fn worded(error: &RenderError) -> String {
+    match error {
+        RenderError::Shader(message) => message.clone(),
+        other => format!("error: {other}"),
+    }
+}

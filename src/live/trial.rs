@@ -1,0 +1,87 @@
+//! `velour verify` on the shader that is being looked at, beside the picture.
+
+use super::board::Board;
+use super::inbox::Knob;
+use super::subject::{Overrides, Subject, base};
+use crate::closure::Settings;
+use crate::compile::Shader;
+use crate::measure::verify::{Effort, ShaderSubject, cannot_run, verify};
+use serde_json::{Value, json};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// One verification at a time.
+#[derive(Debug, Default)]
+pub struct Trial {
+    running: Arc<AtomicBool>,
+}
+
+/// Says how a verification stands.
+fn put(board: &Board, value: Value) {
+    board.publish([("verify", value)], None);
+}
+
+impl Trial {
+    /// Verifies the last shader of a group, with the values that the scene and the page give it, unless one is being verified.
+    pub fn begin(
+        &self,
+        subject: &Subject,
+        group: usize,
+        overrides: &Overrides,
+        settings: Settings,
+        board: &Arc<Board>,
+    ) {
+        let Some(part) = subject.parts.get(group) else { return };
+        let (Some(layer), Some(shader)) = (part.spec.layers.last(), part.shaders.last().cloned()) else { return };
+        if self.running.swap(true, Ordering::Relaxed) {
+            return;
+        }
+        let number = part.spec.layers.len() - 1;
+        let value = |name: &str| {
+            let knob = Knob { group, layer: number, name: name.to_owned() };
+            let written = layer.params.iter().any(|param| param.name == name);
+            overrides.get(&knob).cloned().or_else(|| base(layer, &shader, name).filter(|_| written))
+        };
+        let names = shader.typed.params.iter().map(|param| &shader.typed.variables[param.var.0 as usize].name);
+        let given: Vec<(String, String)> =
+            names.filter_map(|name| Some((name.to_string(), value(&name.to_string())?.text()))).collect();
+        let (board, running, fed) = (board.clone(), self.running.clone(), !part.spec.connections.is_empty());
+        std::thread::spawn(move || {
+            put(&board, json!({"state": "running", "shader": shader.name(), "done": 0, "total": 0}));
+            put(&board, run(&shader, &given, settings, fed, &board));
+            running.store(false, Ordering::Relaxed);
+        });
+    }
+}
+
+fn run(shader: &Shader, given: &[(String, String)], settings: Settings, fed: bool, board: &Board) -> Value {
+    let name = shader.name();
+    let wrong = |text: String| json!({"state": "error", "shader": name, "text": text});
+    // A shader that cannot be run is not tried at thousands of places.
+    let group = given.iter().fold(shader.group(), |group, (name, text)| group.text(name, text)).build();
+    let group = match group {
+        Ok(group) => group,
+        Err(error) => return wrong(error.to_string()),
+    };
+    if let Some(report) = cannot_run(&group) {
+        return wrong(report.to_string());
+    }
+    let effort = Effort::quick();
+    let subject = match ShaderSubject::new(name, shader, given, settings, &effort) {
+        Ok(subject) => subject,
+        Err(error) => return wrong(error.to_string()),
+    };
+    let report = verify(&[&subject], &effort, &|done, total| {
+        put(board, json!({"state": "running", "shader": name, "done": done, "total": total}));
+    });
+    let rows: Vec<Value> = report
+        .worst()
+        .iter()
+        .map(|line| {
+            let [_, check, worst, bound, verdict, place] = line.cells();
+            json!({"check": check, "worst": worst, "bound": bound, "verdict": verdict, "place": place})
+        })
+        .collect();
+    let given: Vec<String> = given.iter().map(|(name, text)| format!("{name} {text}")).collect();
+    json!({"state": "done", "shader": name, "passed": report.passed(), "rows": rows, "given": given, "alone": fed})
+}
