@@ -264,7 +264,6 @@ impl Session {
         (self.stages, self.work) = (None, Work::None);
         let stages = Stages::new(&subject.scene, &settings, rate).map_err(|error| worded(&error));
         self.subject = Some(subject);
-        self.put_controls();
         self.stages = Some(stages?);
         Ok(())
     }
@@ -274,15 +273,14 @@ impl Session {
         let renewed = subject.compile(&self.source, &self.dirty, &mut self.overrides)?;
         let groups = subject.take(&self.source, renewed);
         self.dirty.clear();
-        self.put_controls();
         self.stages.iter_mut().for_each(|stages| stages.change(groups.clone()));
         Ok(())
     }
 
-    fn put_controls(&self) {
-        if let Some(subject) = &self.subject {
-            self.board.publish([("controls", controls(subject, &self.overrides))], None);
-        }
+    /// Puts up how it stands, with the controls as they are now: at once, so that a page asks once.
+    fn put_all(&self, state: &str) {
+        let controls = self.subject.as_ref().map(|subject| ("controls", controls(subject, &self.overrides)));
+        self.board.publish([("status", self.status(state))].into_iter().chain(controls), None);
     }
 
     /// Begins the picture anew.
@@ -294,7 +292,7 @@ impl Session {
         if let Err(error) = begun {
             return self.fail(worded(&error));
         }
-        self.board.publish([("status", self.status("rendering"))], None);
+        self.put_all("rendering");
     }
 
     /// Says what is wrong; the picture stays as it is.
@@ -303,7 +301,7 @@ impl Session {
         self.trouble = Some(text);
         self.watched.any(true);
         self.since = None;
-        self.board.publish([("status", self.status("wrong"))], None);
+        self.put_all("wrong");
     }
 
     /// Watches what has been read since.
