@@ -55,7 +55,7 @@ pub struct Renewed {
 
 /// The preview of a bare shader: a ball on a floor under a sky and a lamp.
 const PREVIEW: &str = r#"<World>
-<Camera eye="0,1.5,5" look_at="0,0.95,0" fov="46" res="640 480"/><Option max_bounces="int 6"/>
+<Camera eye="0,1.5,5" look_at="0,0.95,0" fov="54" res="640 480"/><Option max_bounces="int 6"/>
 <ShaderGroup>color radiance 0.30 0.32 0.36; shader sky layer1;</ShaderGroup><Background resolution="64"/>
 <ShaderGroup>color Cs 0.42 0.41 0.40; shader matte layer1;</ShaderGroup>
 <Quad corner="-30,0,-30" edge_x="0,0,60" edge_y="60,0,0"/>

@@ -80,7 +80,7 @@ function drawFigures() {
   const all = [
     entry("", picture.whole.join(" × ")),
     entry("samples", least === most ? most : `${least} to ${most}`),
-    entry("error", picture.goal ? `${error} of ${picture.goal}` : error),
+    entry("error", picture.goal ? `${error} of ${Number(picture.goal.toPrecision(2))}` : error),
   ];
   if (picture.waited !== null) all.push(entry("first picture", `${Math.round(picture.waited)} ms`));
   by("figures").replaceChildren(...all);
@@ -161,8 +161,8 @@ function drawLook(found) {
     by("where").textContent = found.nothing ? `${found.x}, ${found.y}: nothing` : found.trouble ? "no pixels while something is wrong" : "";
     return;
   }
-  const place = `u ${found.uv[0].toFixed(3)}  v ${found.uv[1].toFixed(3)}`;
-  by("where").textContent = `${found.x}, ${found.y}   ${found.name ?? ""}   ${place}${kept ? "   kept, Esc lets go" : ""}`;
+  const place = `u ${found.uv[0].toFixed(3)}, v ${found.uv[1].toFixed(3)}`;
+  by("where").textContent = [`${found.x}, ${found.y}`, found.name, place, kept && "kept, Esc lets go"].filter(Boolean).join(" · ");
   pixel.draw(found);
   shown = found;
   if (kept && found.group !== null && kept.fresh) {
