@@ -65,6 +65,8 @@
 //! | [`closure`] | | each closure in one place; the tree: print, read, flatten to lobes, evaluate, sample |
 //! | [`exec`] | | program and points to closure tree |
 //! | [`compile`] | | the pipeline in one place |
+//! | `query` | `lsp` | what editors ask: names, meanings, what may be written |
+//! | `lsp` | `lsp` | the language server that answers them |
 //! | `scene` | `render` | scene XML, meshes, shader groups |
 //! | `render` | `render` | wavefront path tracer, film, image files |
 //! | `measure` | `measure`, `chart` | furnace, statistics, quadrature: what tests and charts run on |
@@ -135,6 +137,8 @@ pub mod lang;
 pub mod limits;
 #[cfg(feature = "live")]
 pub mod live;
+#[cfg(feature = "lsp")]
+pub mod lsp;
 pub mod math;
 // Its truths are f64, and no picture depends on it.
 #[cfg(feature = "measure")]
@@ -142,6 +146,8 @@ pub mod math;
 pub mod measure;
 pub mod ops;
 pub mod optimize;
+#[cfg(feature = "lsp")]
+pub mod query;
 #[cfg(feature = "render")]
 pub mod render;
 #[cfg(feature = "render")]

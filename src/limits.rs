@@ -112,8 +112,14 @@ pub const TEXTURE_BYTES: u64 = 16 << 30;
 /// Pixels of a picture.
 pub const PIXELS: u64 = 1 << 27;
 
-/// Channels of the file of a part: ten tiers and two for carries, of five numbers of two words each.
-pub const PART_CHANNELS: usize = 120;
+/// Pixels along a side of a frame that a picture is cut out of: beyond, its places are no longer whole in a single.
+pub const FRAME_SIDE: u32 = 1 << 23;
+
+/// Cells of a contact sheet along a sweep.
+pub const CELLS: usize = 256;
+
+/// Channels of the file of a part: ten tiers and two for carries, of five numbers of a word each, and of two in the last.
+pub const PART_CHANNELS: usize = 65;
 
 /// Times that the file of a part may be smaller than its numbers: runs of equal bytes are packed 64 to one.
 pub const PART_PACKED: u64 = 80;

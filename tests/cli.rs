@@ -402,34 +402,6 @@ fn renders_stop_at_a_noise_or_a_time_and_say_what_they_reached() {
 }
 
 #[test]
-fn a_first_scene_is_written_renders_and_is_never_written_over() {
-    let place = Place::new();
-    let (code, out, error) = place.say(&["new", "first"]);
-    assert_eq!((code, error.as_str()), (0, ""));
-    let command = out.lines().last().unwrap();
-    assert_eq!(command, "  velour render first/scene.xml -o picture.png");
-    let words: Vec<&str> = command.split_whitespace().skip(1).collect();
-    // Away from the checkout, so that sky, matte and emitter are those in the binary.
-    let (code, _, error) = place.say(&[&words[..], &["--spp", "1"], &SMALL[..]].concat());
-    assert_eq!((code, error.lines().count()), (0, 1), "{error}");
-    assert!(place.path().join("picture.png").is_file());
-    assert_eq!(place.say(&["check", "first/silk.osl"]), (0, String::new(), String::new()));
-
-    place.file("first/silk.osl", "mine");
-    std::fs::remove_file(place.path().join("first/scene.xml")).unwrap();
-    let (code, out, error) = place.say(&["new", "first"]);
-    assert_eq!((code, out.as_str()), (2, ""));
-    let expected = "error: `first/silk.osl` is there already\n  help: nothing is written over; name another folder\n";
-    assert_eq!(error, expected);
-    assert_eq!(std::fs::read(place.path().join("first/silk.osl")).unwrap(), b"mine");
-    assert!(!place.path().join("first/scene.xml").exists(), "all or nothing");
-
-    let (code, out, _) = place.say(&["new"]);
-    assert!(code == 0 && out.starts_with("scene.xml and silk.osl are written"), "{out}");
-    assert_eq!(place.say(&["new", "matte.osl"]).0, 2, "a file is no folder");
-}
-
-#[test]
 fn shaders_of_the_binary_come_after_those_of_the_scene_and_the_path() {
     let place = Place::new();
     std::fs::remove_file(place.path().join("sky.osl")).unwrap();

@@ -94,3 +94,66 @@ fn a_failure_leaves_the_old_file_and_nothing_else() {
     symlink("circle", &circle).unwrap();
     assert!(Destination::at(&circle).is_err());
 }
+
+/// A disk of a megabyte, where this process may mount one.
+struct Disk(tempfile::TempDir);
+
+impl Disk {
+    fn new() -> Option<Self> {
+        let folder = tempfile::tempdir().unwrap();
+        let mount = ["-t", "tmpfs", "-o", "size=1m", "none"];
+        let mounted = std::process::Command::new("mount").args(mount).arg(folder.path()).output();
+        let there = mounted.is_ok_and(|ran| ran.status.success());
+        if !there {
+            println!("skipped: no disk can be mounted here");
+        }
+        there.then(|| Disk(folder))
+    }
+}
+
+impl Drop for Disk {
+    fn drop(&mut self) {
+        let _ = std::process::Command::new("umount").arg(self.0.path()).output();
+    }
+}
+
+#[test]
+fn room_that_is_held_is_there_when_the_disk_is_full() {
+    let Some(disk) = Disk::new() else { return };
+    let at = |name: &str| disk.0.path().join(name);
+    let hold = |name: &str, bytes: u64| Destination::at(&at(name)).unwrap().hold(bytes);
+    let error = hold("large", 2 << 20).unwrap_err();
+    assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+    let room = hold("picture", 600 << 10).unwrap();
+    assert!(room.is_held());
+    assert_eq!(names(disk.0.path()), Vec::<String>::new());
+    // Others take what is left.
+    let bytes = vec![1; 1 << 20];
+    assert!(fs::write(at("others"), &bytes).is_err());
+    assert!(write(&at("without"), &"x".repeat(500 << 10)).is_err());
+    room.write(|sink| sink.write_all(&bytes[..500 << 10])).unwrap();
+    assert_eq!(fs::read(at("picture")).unwrap(), bytes[..500 << 10]);
+    // What was not needed is given back.
+    fs::write(at("more"), &bytes[..90 << 10]).unwrap();
+    assert_eq!(names(disk.0.path()), ["more", "others", "picture"]);
+}
+
+#[test]
+fn room_is_given_back_and_nothing_is_held_for_what_is_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("one"), "old").unwrap();
+    fs::hard_link(at("one"), at("two")).unwrap();
+    fs::write(at("old"), "old").unwrap();
+    for (name, never) in [("one", true), ("old", false), ("new", false)] {
+        let room = Destination::at(&at(name)).unwrap().hold(1 << 20).unwrap();
+        assert!(!(never && room.is_held()));
+        room.write(|sink| sink.write_all(b"few")).unwrap();
+        let found = fs::metadata(at(name)).unwrap();
+        assert!(found.len() == 3 && found.blocks() * 512 <= 1 << 16, "{name}: {} blocks", found.blocks());
+    }
+    assert_eq!(fs::read_to_string(at("two")).unwrap(), "few");
+    let room = Destination::at(Path::new("/dev/null")).unwrap().hold(u64::MAX).unwrap();
+    assert!(!room.is_held());
+    assert_eq!(names(folder.path()), ["new", "old", "one", "two"]);
+}

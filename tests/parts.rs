@@ -255,3 +255,43 @@ fn a_time_ends_where_it_says_and_a_signal_ends_it_before() {
     let (status, text) = child.end();
     assert!(status == 143 && text.contains("stopped: cut.exr holds"), "{text}");
 }
+
+#[test]
+fn a_disk_that_is_too_small_is_told_of_before_the_render_and_parts_that_fail_once() {
+    let place = Place::new();
+    let disk = place.path().join("disk");
+    std::fs::create_dir(&disk).unwrap();
+    let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=1m", "none"]).arg(&disk).output();
+    if !mount.is_ok_and(|ran| ran.status.success()) {
+        println!("skipped: no disk can be mounted here");
+        return;
+    }
+    let small = place.say("render ball.xml -o disk/a.exr --spp 1");
+    let start = Instant::now();
+    let (status, text) = place.say("render ball.xml -o disk/b.exr --res 1000 1000 --spp 40000000");
+    let soon = start.elapsed() < Duration::from_secs(20);
+    let child = place.command("render ball.xml -o disk/c.exr --res 400 400 --samples 0..8 --checkpoint 0.01 --no-hold");
+    let (lost, rescued) = told({ child }.env("TMPDIR", place.path()).output().unwrap());
+    let left: Vec<_> = std::fs::read_dir(&disk).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(Command::new("umount").arg(&disk).status().unwrap().success());
+    assert_eq!(small.0, 0, "{}", small.1);
+    assert!(status == 2 && soon && text.contains("may take 12 MB") && text.contains("--no-hold"), "{text}");
+    assert_eq!(left, ["a.exr"]);
+    assert!(lost == 2 && rescued.contains("its samples are in"), "{rescued}");
+    assert_eq!(rescued.matches("was not kept").count(), 1, "{rescued}");
+    assert!(rescued.contains("more parts for that reason"), "{rescued}");
+}
+
+#[test]
+fn merges_stay_in_their_sandbox() {
+    let place = Place::new();
+    std::fs::create_dir(place.path().join("in")).unwrap();
+    place.done("render ball.xml -o out.exr --samples 0..1");
+    place.done("render ball.xml -o in/a.exr --samples 1..2");
+    std::os::unix::fs::symlink("../out.exr", place.path().join("in/link.exr")).unwrap();
+    place.done("merge in/a.exr -o b.exr --sandbox in --memory 1G");
+    for part in ["out.exr", "in/link.exr"] {
+        let (status, text) = place.say(&format!("merge in/a.exr {part} -o c.exr --sandbox in"));
+        assert!(status == 2 && text.contains("sandbox") && !place.path().join("c.exr").exists(), "{text}");
+    }
+}

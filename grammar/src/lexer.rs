@@ -196,6 +196,11 @@ enum Meant {
     Name,
 }
 
+/// Is a word a keyword, or reserved?
+pub(crate) fn is_taken(word: &str) -> bool {
+    Sym::keyword(word).is_some() || reserved(word).is_some()
+}
+
 fn reserved(word: &str) -> Option<(Meant, &'static str)> {
     Some(match word {
         "bool" => (Meant::Symbol(Sym::IntType), "write `int`; conditions are 0 or 1"),

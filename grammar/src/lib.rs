@@ -22,10 +22,12 @@ mod depth;
 pub mod diagnostic;
 mod explain;
 pub mod files;
+mod format;
 mod lexer;
 pub mod limits;
 mod literal;
 pub mod names;
+pub mod places;
 mod preprocessor;
 pub mod print;
 mod render;
@@ -41,11 +43,13 @@ mod tree;
 mod osl;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use format::{FormatError, format, format_bytes};
 pub use render::{Format, json};
 pub use source::{Location, Sources};
 pub use span::Span;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// What the preprocessor is told from outside.
 #[derive(Clone, Debug, Default)]
@@ -61,6 +65,8 @@ pub struct Options {
     /// Files kept in memory, name and text, which `#include` finds before those of `include_dirs`: headers that come with the
     /// compiler.
     pub own_files: Vec<(String, String)>,
+    /// Texts that stand for files of these paths, links followed, whatever the disk has: what an editor has open and has not saved.
+    pub buffers: Vec<(PathBuf, Arc<str>)>,
     /// Name and text of a file that is read before the user's: the standard header.
     pub prelude: Option<(String, String)>,
     /// Which files `#include` may read.

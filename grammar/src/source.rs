@@ -81,6 +81,8 @@ pub(crate) struct MacroCall {
     pub place: Place,
     /// The call that this name came out of, or [`NO_CALL`].
     pub parent: u32,
+    /// Where the macro is defined.
+    pub defined: Option<Place>,
 }
 
 /// A place for people.

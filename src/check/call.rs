@@ -16,6 +16,7 @@ impl Checker<'_> {
     pub(super) fn check_call(&mut self, name: &Ident, args: &[ast::Expr], expected: Option<&Type>, span: Span) -> Expr {
         if let Some(Symbol::Struct(structure)) = self.lookup(&name.name) {
             let structure = structure.clone();
+            self.note_struct(name.span, &structure);
             let ty = Type { element: crate::lang::types::Element::Struct(structure.clone()), length: Length::Single };
             if args.len() < structure.fields.len() {
                 let (given, wanted) = (args.len(), structure.fields.len());
@@ -28,6 +29,12 @@ impl Checker<'_> {
             }
             let list = ast::Expr { kind: ast::ExprKind::InitList(args.to_vec()), span };
             return self.check_initial(&list, &mut ty.clone());
+        }
+        // Wrong arguments leave it open which one is meant.
+        if self.notes.is_some()
+            && let Some(candidate) = self.candidates(&name.name).first()
+        {
+            self.note(name.span, &name.name, candidate.meaning(), false);
         }
         let list = |arg: &ast::Expr| matches!(arg.kind, ast::ExprKind::InitList(_));
         let values: Vec<Expr> =
@@ -56,7 +63,11 @@ impl Checker<'_> {
             self.unknown_function(name);
             return Expr::error(span);
         }
-        match self.best(&candidates, (args, &values), expected, name) {
+        let best = self.best(&candidates, (args, &values), expected, name);
+        if let Some(best) = &best {
+            self.note(name.span, &name.name, best.meaning(), false);
+        }
+        match best {
             Some(Candidate::User(id)) => self.call_user(id, args, values, span),
             Some(Candidate::Builtin(name, signature)) => self.call_builtin(name, signature, args, values, span),
             Some(Candidate::Closure(id)) => self.call_closure(id, values, span),
@@ -240,10 +251,8 @@ impl Checker<'_> {
 
     /// Warns of a literal name that stands for no noise, which is an error when it runs.
     fn warn_of_noise(&mut self, function: &str, name: &str, span: Span) {
-        const NAMES: &[&str] =
-            &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash", "gabor"];
         let known: Vec<&str> =
-            NAMES.iter().copied().filter(|n| function == "noise" || !n.contains("simplex")).collect();
+            NOISES.iter().copied().filter(|n| function == "noise" || !n.contains("simplex")).collect();
         if !known.contains(&name) {
             let diagnostic =
                 Diagnostic::warning("W0511", span, format!("`{function}` has no \"{name}\"; it gives 0 and an error"));
@@ -370,8 +379,12 @@ fn is_place(expr: &ast::Expr) -> bool {
     }
 }
 
+/// The kinds of noise that have names.
+pub(crate) const NOISES: &[&str] =
+    &["perlin", "snoise", "uperlin", "noise", "simplex", "usimplex", "cell", "hash", "gabor"];
+
 /// The options of `texture` and `environment`.
-const TEXTURE_OPTIONS: &[&str] = &[
+pub(crate) const TEXTURE_OPTIONS: &[&str] = &[
     "alpha",
     "blur",
     "colorspace",

@@ -1,6 +1,7 @@
 //! What a call of a name may mean: functions, builtins and closures that are visible, and how each presents itself.
 
 use super::context::Checker;
+use super::notes::Meaning;
 use super::typed::FunctionId;
 use crate::lang::builtins::{self, Formal};
 use crate::lang::closures::{ClosureId, ParamKind};
@@ -13,6 +14,17 @@ pub(super) enum Candidate {
     User(FunctionId),
     Builtin(&'static str, &'static builtins::Signature),
     Closure(ClosureId),
+}
+
+impl Candidate {
+    /// What its name stands for.
+    pub(super) fn meaning(&self) -> Meaning {
+        match self {
+            Candidate::User(id) => Meaning::Function(*id),
+            Candidate::Builtin(name, _) => Meaning::Builtin(name),
+            Candidate::Closure(id) => Meaning::Closure(*id),
+        }
+    }
 }
 
 impl Checker<'_> {

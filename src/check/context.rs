@@ -1,5 +1,6 @@
 //! The checker's state: scopes, variables, functions, and the messages so far.
 
+use super::notes::{Meaning, NotedFunction, Notes, Use};
 use super::typed::{Function, FunctionId, Shader, Stmt, VarId, Variable};
 use crate::lang::closures::ClosureTable;
 use crate::lang::globals::GLOBALS;
@@ -53,6 +54,8 @@ pub(super) struct Checker<'a> {
     pub inside: Option<FunctionId>,
     /// Calls made by the shader body itself.
     pub shader_calls: Vec<(FunctionId, Span)>,
+    /// What is noted of names, when somebody asks for it.
+    pub notes: Option<Box<Notes>>,
 }
 
 impl<'a> Checker<'a> {
@@ -72,6 +75,7 @@ impl<'a> Checker<'a> {
             in_params: false,
             inside: None,
             shader_calls: Vec::new(),
+            notes: None,
         };
         for &(name, global, base, writable) in GLOBALS {
             let id = VarId(checker.variables.len() as u32);
@@ -120,6 +124,7 @@ impl<'a> Checker<'a> {
         let id = VarId(self.variables.len() as u32);
         self.variables.push(Variable { name: name.clone(), ty, span, global: None });
         self.writable.push(writable);
+        self.note(span, name, Meaning::Variable(id), true);
         let earlier = self.scopes.last_mut().and_then(|scope| scope.insert(name.clone(), Symbol::Var(id)));
         if let Some(Symbol::Var(earlier)) = earlier {
             let before = self.variables[earlier.0 as usize].span;
@@ -127,6 +132,25 @@ impl<'a> Checker<'a> {
             self.report(diagnostic.also(before, "declared here first").help("give one of them another name"));
         }
         id
+    }
+
+    /// Notes what a name stands for.
+    pub fn note(&mut self, span: Span, name: &Name, meaning: Meaning, declares: bool) {
+        if let Some(notes) = &mut self.notes {
+            notes.uses.push(Use { span, name: name.clone(), meaning, declares });
+        }
+    }
+
+    /// The notes, with all variables and functions there are.
+    pub fn take_notes(&mut self) -> Notes {
+        let mut notes = *self.notes.take().unwrap_or_default();
+        notes.variables = self.variables.clone();
+        notes.functions.resize_with(self.signatures.len(), NotedFunction::default);
+        for (function, signature) in notes.functions.iter_mut().zip(&self.signatures) {
+            (function.name, function.returns) = (signature.name.clone(), signature.returns.clone());
+            function.formals = signature.formals.clone();
+        }
+        notes
     }
 
     /// Notes that the body being checked calls a function.

@@ -1,6 +1,7 @@
 //! Declarations: structs, functions, shaders and their parameters.
 
 use super::context::{Checker, Signature, Symbol};
+use super::notes::Meaning;
 use super::typed::{self, FunctionId, VarId};
 use crate::lang::builtins;
 use crate::lang::types::{Base, Element, Length, Struct, Type};
@@ -42,7 +43,9 @@ impl Checker<'_> {
     fn resolve_struct(&mut self, name: &str, span: Span, array: ArrayLen) -> Type {
         let length = self.resolve_length(array, span);
         if let Some(Symbol::Struct(structure)) = self.lookup(name) {
-            return Type { element: Element::Struct(structure.clone()), length };
+            let structure = structure.clone();
+            self.note_struct(span, &structure);
+            return Type { element: Element::Struct(structure), length };
         }
         let diagnostic = Diagnostic::error("E0407", span, format!("there is no type `{name}`"));
         self.report(diagnostic.help(format!("declare `struct {name} {{ … }};` above, or use a built-in type")));
@@ -96,6 +99,7 @@ impl Checker<'_> {
             fields.push((field.name.name.to_string(), ty));
         }
         let structure = Arc::new(Struct { name: decl.name.name.to_string(), fields });
+        self.note_declared_struct(decl, &structure);
         let scope = self.scopes.len() - 1;
         if let Some(Symbol::Struct(_)) = self.scopes[scope].insert(decl.name.name.clone(), Symbol::Struct(structure)) {
             self.error(
@@ -107,6 +111,35 @@ impl Checker<'_> {
         }
     }
 
+    /// Notes a name that stands for a struct.
+    pub(super) fn note_struct(&mut self, span: Span, structure: &Arc<Struct>) {
+        let number = self.notes.as_ref().and_then(|notes| notes.number_of(structure));
+        if let Some(number) = number {
+            self.note(span, &structure.name.as_str().into(), Meaning::Struct(number), false);
+        }
+    }
+
+    fn note_declared_struct(&mut self, decl: &StructDecl, structure: &Arc<Struct>) {
+        let Some(notes) = &mut self.notes else { return };
+        let number = notes.structs.len() as u32;
+        notes.structs.push(structure.clone());
+        self.note(decl.name.span, &decl.name.name, Meaning::Struct(number), true);
+        for field in &decl.fields {
+            let at = structure.fields.iter().position(|(name, _)| *name == field.name.name);
+            let meaning = Meaning::Field(number, at.unwrap_or_default() as u32);
+            self.note(field.name.span, &field.name.name, meaning, true);
+        }
+    }
+
+    fn note_function(&mut self, decl: &FunctionDecl, id: FunctionId) {
+        self.note(decl.name.span, &decl.name.name, Meaning::Function(id), true);
+        if let Some(notes) = &mut self.notes {
+            let least = notes.functions.len().max(id.0 as usize + 1);
+            notes.functions.resize_with(least, Default::default);
+            notes.functions[id.0 as usize].names = decl.params.iter().map(|param| param.name.name.clone()).collect();
+        }
+    }
+
     pub fn declare_function(&mut self, decl: &FunctionDecl) {
         if decl.body.is_none() && self.binds_to_builtin(decl) {
             return;
@@ -114,10 +147,11 @@ impl Checker<'_> {
         let returns = self.resolve_type(&decl.return_type, ArrayLen::Single);
         let formals: Vec<_> = decl.params.iter().map(|p| (self.resolve_type(&p.ty, p.array), p.output)).collect();
         let mut id = self.function_id(decl, &returns, &formals);
-        let Some(body) = &decl.body else { return };
+        let Some(body) = &decl.body else { return self.note_function(decl, id) };
         if self.bodies[id.0 as usize].is_some() {
             id = self.replaced(id, decl);
         }
+        self.note_function(decl, id);
         self.signatures[id.0 as usize].size = body_size(decl);
         let (saved_returns, saved_inside) = (self.returns.replace(returns.clone()), self.inside.replace(id));
         let saved_loops = std::mem::take(&mut self.loops);
@@ -145,7 +179,9 @@ impl Checker<'_> {
     /// that velour does not have is remembered, since calls of it are no mistake of the shader.
     fn binds_to_builtin(&mut self, decl: &FunctionDecl) -> bool {
         let name = &decl.name.name;
-        if builtins::static_name(name).is_some() || self.closures.named(name).next().is_some() {
+        let closure = self.closures.named(name).next().map(|(id, _)| Meaning::Closure(id));
+        if let Some(meaning) = builtins::static_name(name).map(Meaning::Builtin).or(closure) {
+            self.note(decl.name.span, name, meaning, false);
             return true;
         }
         let builtin = decl.metadata.iter().any(|entry| entry.name.name == "builtin");
@@ -222,6 +258,7 @@ impl Checker<'_> {
     }
 
     pub fn declare_shader(&mut self, decl: &ShaderDecl) -> typed::Shader {
+        self.note(decl.name.span, &decl.name.name, Meaning::Shader, true);
         self.scoped(|c| {
             let metadata = c.check_metadata(&decl.metadata);
             let params = decl.params.iter().map(|param| c.declare_param(param)).collect();

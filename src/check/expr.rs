@@ -2,6 +2,7 @@
 
 use super::context::{Checker, Symbol};
 use super::convert::{assignable, equivalent, is_number};
+use super::notes::Meaning;
 use super::typed::{Expr, ExprKind};
 use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{self, ArrayLen, Ident, TypeSpec};
@@ -55,10 +56,11 @@ impl Checker<'_> {
         }
     }
 
-    fn check_name(&mut self, name: &str, span: Span) -> Expr {
+    fn check_name(&mut self, name: &Name, span: Span) -> Expr {
         match self.lookup(name) {
             Some(Symbol::Var(var)) => {
                 let var = *var;
+                self.note(span, name, Meaning::Variable(var), false);
                 Expr::new(ExprKind::Var(var), self.variables[var.0 as usize].ty.clone(), span)
             }
             Some(_) => {
@@ -259,6 +261,9 @@ impl Checker<'_> {
         let structure = ty.structure().filter(|_| !ty.is_array()).cloned();
         let found = structure.as_ref().and_then(|s| s.fields.iter().position(|(name, _)| *name == field.name));
         if let (Some(structure), Some(at)) = (&structure, found) {
+            if let Some(number) = self.notes.as_ref().and_then(|notes| notes.number_of(structure)) {
+                self.note(field.span, &field.name, Meaning::Field(number, at as u32), false);
+            }
             return Some((at as u32, structure.fields[at].1.clone()));
         }
         let mut diagnostic =

@@ -19,6 +19,7 @@ mod declare;
 mod expr;
 mod format;
 mod initial;
+pub mod notes;
 mod operator;
 mod parts;
 mod place;
@@ -27,6 +28,8 @@ mod statement;
 pub mod typed;
 mod unused;
 
+#[cfg(feature = "lsp")]
+pub(crate) use call::{NOISES, TEXTURE_OPTIONS};
 pub use constant::{Constant, constants};
 pub use unused::unused;
 
@@ -38,6 +41,21 @@ use velour_grammar::{Diagnostic, Diagnostics, Span};
 /// Checks one translation unit. Gives the shader when there is no error, and all messages in any case.
 pub fn check(file: &File, closures: &ClosureTable) -> (Option<typed::Shader>, Diagnostics) {
     let mut checker = Checker::new(closures);
+    let shader = items(&mut checker, file);
+    checker.finish(shader)
+}
+
+/// The same, with what was found out about names.
+pub fn check_noting(file: &File, closures: &ClosureTable) -> (Option<typed::Shader>, Diagnostics, notes::Notes) {
+    let mut checker = Checker::new(closures);
+    checker.notes = Some(Box::default());
+    let shader = items(&mut checker, file);
+    let notes = checker.take_notes();
+    let (shader, diagnostics) = checker.finish(shader);
+    (shader, diagnostics, notes)
+}
+
+fn items(checker: &mut Checker<'_>, file: &File) -> Option<typed::Shader> {
     let mut shader = None;
     for item in &file.items {
         match item {
@@ -58,5 +76,5 @@ pub fn check(file: &File, closures: &ClosureTable) -> (Option<typed::Shader>, Di
         let message = "there is no shader in this file";
         checker.report(Diagnostic::error("E0402", Span::NONE, message).help("write `surface name() { … }`"));
     }
-    checker.finish(shader.map(|(shader, _)| shader))
+    shader.map(|(shader, _)| shader)
 }

@@ -2,6 +2,7 @@
 
 use super::context::{Checker, Symbol};
 use super::expr::component;
+use super::notes::Meaning;
 use super::typed::{Access, Expr, ExprKind, Place};
 use crate::lang::types::{Base, Type};
 use velour_grammar::{Diagnostic, ast};
@@ -34,6 +35,7 @@ impl Checker<'_> {
             ast::ExprKind::Name(name) => match self.lookup(name) {
                 Some(Symbol::Var(var)) => {
                     let var = *var;
+                    self.note(expr.span, name, Meaning::Variable(var), false);
                     Some(Place { var, path: Vec::new(), ty: self.variables[var.0 as usize].ty.clone() })
                 }
                 _ => {

@@ -3,15 +3,14 @@
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
+use super::source_file::read;
 use super::speak::{colored, say, say_as_it_is, tell};
 use super::watch::TimeBound;
 use crate::compile::{Checked, Compiler, Recipe, Shader};
 use crate::files::Destination;
-use crate::limits::SHADER_BYTES;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use velour_grammar::files::Access;
 use velour_grammar::{Diagnostics, Format, Sources};
 
 /// How messages look.
@@ -103,18 +102,6 @@ pub fn run(args: &CheckArgs, make: bool) -> Result<(), Failure> {
         (_, true) => Err(Failure::Wrong(String::new())),
         _ => Ok(()),
     }
-}
-
-/// A file's name for messages and what is in it.
-fn read(path: &Path, access: &Access) -> Result<(String, Vec<u8>), String> {
-    let standard = path == Path::new("-");
-    let name = if standard { "<stdin>".to_owned() } else { path.display().to_string() };
-    let mut bytes = Vec::new();
-    let read = match standard {
-        true => std::io::stdin().lock().take(SHADER_BYTES).read_to_end(&mut bytes).map(|_| bytes),
-        false => access.read(path, SHADER_BYTES).map_err(std::io::Error::from),
-    };
-    read.map(|bytes| (name.clone(), bytes)).map_err(|error| format!("{name}: error: cannot be read: {error}\n"))
 }
 
 /// Checks one file, and writes how it is compiled where that is wanted; true when it is right. What there was to it takes the place of the
@@ -221,7 +208,7 @@ fn depend(args: &CheckArgs, compiler: &Compiler, name: &str, sources: &Sources) 
 /// Writes a text to a file, or to standard output.
 fn put(file: Option<&Path>, text: &str) -> Result<(), Failure> {
     let Some(file) = file else {
-        say_as_it_is(text);
+        say_as_it_is(text.as_bytes());
         return Ok(());
     };
     let written = Destination::at(file).and_then(|file| file.write(|sink| sink.write_all(text.as_bytes())));

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::names::named;
 use super::speak::{lost, tell};
-use super::{chart, check, info, live, merge, new, render, shade, tree, verify};
+use super::{chart, check, fmt, info, live, lsp, merge, new, render, shade, tree, verify};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -30,6 +30,10 @@ enum Command {
     Check(check::CheckArgs),
     /// Check shaders and write .oso files that say how they are compiled, as OSL's oslc is used
     Compile(check::CheckArgs),
+    /// Lay shaders out anew: indentation and spaces
+    Fmt(fmt::FmtArgs),
+    /// Serve an editor, as a language server over standard input and output
+    Lsp(lsp::LspArgs),
     /// Show the closure tree of a shader
     Tree(tree::TreeArgs),
     /// Run shaders on a grid of points, as OSL's testshade does
@@ -60,6 +64,8 @@ pub fn run() -> ExitCode {
         Command::Merge(args) => merge::run(&args),
         Command::Check(args) => check::run(&args, false),
         Command::Compile(args) => check::run(&args, true),
+        Command::Fmt(args) => fmt::run(&args),
+        Command::Lsp(args) => lsp::run(&args),
         Command::Tree(args) => tree::run(&args),
         Command::Shade(args) => shade::run(&args.words),
         Command::Verify(args) => verify::run(&args),

@@ -1,7 +1,8 @@
 //! What a command ends with when it does not do what it was asked for.
 
+use crate::compile::CompileError;
 use crate::render::RenderError;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, SceneProblem};
 
 /// What a command ends with.
 #[derive(Debug)]
@@ -17,8 +18,14 @@ pub enum Failure {
 impl Failure {
     /// A scene that cannot be loaded.
     pub fn of_scene(error: SceneError) -> Self {
-        // Without a place the scene file itself could not be read.
-        if error.place.is_none() { Failure::Usage(error.to_string()) } else { Failure::Wrong(error.to_string()) }
+        let wrong = match &*error.problem {
+            SceneProblem::Shader { error: said, .. } => {
+                error.place.is_some() || !matches!(**said, CompileError::File { .. })
+            }
+            // Without a place the scene file itself could not be read.
+            _ => error.place.is_some(),
+        };
+        if wrong { Failure::Wrong(error.to_string()) } else { Failure::Usage(error.to_string()) }
     }
 
     /// A scene that cannot be rendered.

@@ -5,14 +5,14 @@ use super::failure::Failure;
 use super::info_file::{shader_json, shader_lines, shader_text};
 use super::speak::say;
 use crate::compile::CompileError;
-use crate::lang::builtins::{self, Formal, Signature};
+use crate::lang::builtins;
 use crate::lang::closures::ClosureTable;
-use crate::lang::describe::{closure_head, closure_text};
+use crate::lang::describe::{closure_head, closure_text, function_text, signature_text};
+use crate::lang::sentences::sentence;
 use crate::scene::{find_shader, nearest};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use velour_grammar::ast::{FunctionDecl, Item};
-use velour_grammar::print::print_type;
 
 /// Arguments of `velour info`.
 #[derive(clap::Args)]
@@ -163,35 +163,10 @@ fn one(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {
     for function in header.iter().filter(|f| f.name.name == name) {
         out += &format!("{}\n", function_text(function));
     }
+    if let Some(sentence) = sentence(name) {
+        out += &format!("    {sentence}\n");
+    }
     out
-}
-
-fn signature_text(name: &str, signature: &Signature) -> String {
-    let formal = |(formal, output): &(Formal, bool)| {
-        let ty = match formal {
-            Formal::Type(ty) => ty.to_string(),
-            Formal::Any => "any".to_owned(),
-            Formal::AnyArray => "any[]".to_owned(),
-        };
-        if *output { format!("output {ty}") } else { ty }
-    };
-    let mut formals: Vec<String> = signature.formals.iter().map(formal).collect();
-    if signature.variadic {
-        formals.push("...".to_owned());
-    }
-    if signature.options {
-        formals.push("[\"name\", value]...".to_owned());
-    }
-    format!("{} {name}({})", signature.returns, formals.join(", "))
-}
-
-fn function_text(function: &FunctionDecl) -> String {
-    let params = function.params.iter().map(|param| {
-        let output = if param.output { "output " } else { "" };
-        format!("{output}{} {}", print_type(&param.ty), param.name.name)
-    });
-    let params: Vec<String> = params.collect();
-    format!("{} {}({})", print_type(&function.return_type), function.name.name, params.join(", "))
 }
 
 fn unknown(table: &ClosureTable, header: &[FunctionDecl], name: &str) -> String {

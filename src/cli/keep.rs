@@ -2,8 +2,9 @@
 
 use super::failure::Failure;
 use super::speak::tell;
+use crate::files::Room;
 use crate::render::part::{self, Part};
-use crate::render::{Progress, Renderer, output};
+use crate::render::{Progress, Renderer, Screen, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::path::{Path, PathBuf};
@@ -66,6 +67,32 @@ impl Progress for Watch {
     }
 }
 
+/// Parts that were not kept on the way: each reason is told once, the others are counted.
+#[derive(Default)]
+struct Missed {
+    reason: String,
+    more: u32,
+}
+
+impl Missed {
+    fn tell(&mut self, reason: String) {
+        if self.reason == reason {
+            self.more += 1;
+            return;
+        }
+        self.sum_up();
+        tell(&format!("warning: this part of the picture was not kept: {reason}\n"));
+        *self = Missed { reason, more: 0 };
+    }
+
+    /// Says how many there were of the last reason.
+    fn sum_up(&self) {
+        if self.more > 0 {
+            tell(&format!("warning: and {} more parts for that reason\n", self.more));
+        }
+    }
+}
+
 /// What has become of a render.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
@@ -85,6 +112,8 @@ pub struct Keeping<'a> {
     pub parts: bool,
     /// The part that the render goes on from.
     pub resumed: Option<&'a Path>,
+    /// How a PNG shows light.
+    pub screen: Screen,
 }
 
 impl Keeping<'_> {
@@ -117,7 +146,7 @@ impl Keeping<'_> {
         let every = self.every.filter(|_| self.part_file().is_some()).map(|s| Duration::from_secs_f64(s.min(1e9)));
         let due = || every.map(|every| Instant::now() + every);
         let mut watch = Watch { bar, due: due(), share: [0.0, 1.0] };
-        let mut kept = false;
+        let (mut kept, mut missed) = (false, Missed::default());
         // Rounds of a render that stops by itself are its own.
         let settings = renderer.settings();
         let (adapts, wanted) = (settings.adapts(), f64::from(settings.samples - settings.first_sample));
@@ -132,42 +161,46 @@ impl Keeping<'_> {
                 break !left;
             }
             if watch.due.is_some_and(|due| Instant::now() >= due) {
-                kept |= self.checkpoint(&renderer.part());
+                kept |= self.checkpoint(&renderer.part(), &mut missed);
                 watch.due = due();
             }
         };
         watch.bar.finish_and_clear();
+        missed.sum_up();
         Ok(Outcome { done, kept })
     }
 
     /// Writes a part while the render goes on, which a disk that is full for a while does not end; true when it is there.
-    fn checkpoint(&self, part: &Part) -> bool {
+    fn checkpoint(&self, part: &Part, missed: &mut Missed) -> bool {
         let Some(path) = self.part_file() else { return false };
         let written = part::write(part, &path);
         if let Err(message) = &written {
-            tell(&format!("warning: this part of the picture was not kept: {message}\n"));
+            missed.tell(message.to_string());
         }
         written.is_ok()
     }
 
-    /// Writes what a finished or a stopped render leaves.
-    pub fn write(&self, renderer: &Renderer, outcome: Outcome) -> Result<(), Failure> {
+    /// Writes what a finished or a stopped render leaves, the picture's file into `room`.
+    pub fn write(&self, renderer: &Renderer, outcome: Outcome, room: Option<Room>) -> Result<(), Failure> {
         let done = outcome.done;
         let part_file = self.part_file();
         let beside = part_file.as_ref().filter(|file| *file != self.output);
         let failed = |message| Failure::Usage(format!("error: {message}{}", self.rescue(renderer)));
         let is_part = self.is_exr() && (self.parts || !done);
         let part = (is_part || !done).then(|| renderer.part());
-        let written = match part.as_ref().filter(|_| is_part) {
-            Some(part) => part::write(part, self.output),
-            None => output::write(&renderer.picture(), self.output),
+        if let (Some(part), Some(file)) = (part.as_ref().filter(|_| !done), beside) {
+            // The samples first: a picture of them can be made at any time.
+            part::write(part, file).map_err(failed)?;
+        }
+        let written = match &part {
+            Some(part) if is_part => part::write_into(part, self.output, room),
+            Some(part) => output::write_into(&part.picture(), self.output, &self.screen, room),
+            None => output::write_into(&renderer.picture(), self.output, &self.screen, room),
         };
         written.map_err(failed)?;
-        match beside {
-            // A part that was written on the way, or gone on from, has done its work; one that another render has left is that one's.
-            Some(file) if done && (outcome.kept || self.resumed == Some(file)) => drop(std::fs::remove_file(file)),
-            Some(file) => part.iter().try_for_each(|part| part::write(part, file)).map_err(failed)?,
-            None => {}
+        // A part that was written on the way, or gone on from, has done its work; one that another render has left is that one's.
+        if let Some(file) = beside.filter(|file| done && (outcome.kept || self.resumed == Some(file))) {
+            let _ = std::fs::remove_file(file);
         }
         if let Some(part) = part.filter(|_| !done) {
             self.tell_stopped(&part, renderer.settings().adapts(), part_file.as_deref());

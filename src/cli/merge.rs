@@ -1,10 +1,14 @@
 //! `velour merge`: parts of a picture in, the picture out.
 
+use super::compile::CompileArgs;
 use super::failure::Failure;
+use super::screen::ScreenArgs;
 use super::speak::tell;
+use super::watch;
 use crate::render::output;
 use crate::render::part::{self, Part, Ranges};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use velour_grammar::files::Access;
 
 /// Arguments of `velour merge`.
 #[derive(clap::Args)]
@@ -21,6 +25,27 @@ pub struct MergeArgs {
     /// Leave the sums out of an .exr: the file of a plain render, which nothing can be added to
     #[arg(long)]
     picture: bool,
+    #[command(flatten)]
+    screen: ScreenArgs,
+    /// Read no file outside of this folder
+    #[arg(long, value_name = "DIR")]
+    sandbox: Option<PathBuf>,
+    /// Bytes that the command may hold, such as 2G or 512M; it ends when it needs more
+    #[arg(long, value_name = "BYTES", value_parser = watch::bytes)]
+    memory: Option<u64>,
+}
+
+/// Reads a part that may be read.
+pub fn part_of(access: &Access, path: &Path) -> Result<Part, Failure> {
+    let usage = |message: String| Failure::Usage(format!("error: {message}"));
+    if access.sandbox().is_none() {
+        return part::read(path).map_err(|error| usage(error.to_string()));
+    }
+    if !access.covers(path) {
+        return Err(usage(format!("{} is not in the sandbox", path.display())));
+    }
+    let (file, _) = access.open(path, u64::MAX).map_err(|error| usage(format!("{}: {error}", path.display())))?;
+    part::read_file(&file, path).map_err(|error| usage(error.to_string()))
 }
 
 /// Merges parts and writes the picture.
@@ -34,9 +59,10 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
         );
         return Err(Failure::Usage(text));
     }
+    let access = CompileArgs::default().bounded(args.sandbox.clone(), args.memory).access()?;
     let mut merged: Option<Part> = None;
     for path in &args.parts {
-        let part = part::read(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+        let part = part_of(&access, path)?;
         merged = Some(match merged {
             None => part,
             Some(mut all) => {
@@ -49,7 +75,7 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let Some(part) = merged else { return Ok(()) };
     complete(args, &part)?;
     let written = if args.picture || format != output::Format::Exr {
-        output::write(&part.picture(), &args.output)
+        output::write_as(&part.picture(), &args.output, &args.screen.screen())
     } else {
         part::write(&part, &args.output)
     };

@@ -3,26 +3,33 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::keep::{Keeping, Signals};
+use super::merge::part_of;
+use super::screen::ScreenArgs;
 use super::share::Share;
+use super::sheet::{Sheet, Sweep};
 use super::speak::{leave_output, say, tell};
+use super::subject::Subject;
 use super::threads::capped;
 use super::watch::TimeBound;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
+use crate::files::Room;
 use crate::limits::{PRINTED, PRINTED_BYTES};
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
-use crate::render::part::{self, Ranges};
-use crate::render::{About, Explanation, LightChoice, LightPoints, Renderer, Settings, Terminator, output};
+use crate::render::part::Ranges;
+use crate::render::{
+    About, Explanation, Filter, Frame, LightChoice, LightPoints, Renderer, Settings, Terminator, output,
+};
 use crate::scene::{Scene, ShaderFiles};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 /// Arguments of `velour render`.
 #[derive(clap::Args)]
 pub struct RenderArgs {
-    /// A scene file, or the text of a scene
+    /// A scene file, the text of a scene, or a shader (.osl), which is shown on a ball and a cloth
     scene: String,
     /// The image: .exr (linear, with a note of how it was made), .png or .hdr
     #[arg(short, long, value_name = "FILE")]
@@ -36,6 +43,15 @@ pub struct RenderArgs {
     /// Width and height in pixels [default: what the scene states, or 640 480]
     #[arg(short, long, num_args = 2, value_names = ["W", "H"])]
     res: Vec<u32>,
+    /// Set a parameter, NAME of a shader, or NAME, LAYER.NAME or GROUP.LAYER.NAME of a scene: numbers with commas between, or a string
+    #[arg(long, num_args = 2, value_names = ["NAME", "VALUE"], allow_hyphen_values = true, action = clap::ArgAction::Append)]
+    param: Vec<String>,
+    /// Make a sheet of pictures with a parameter at N values, such as roughness 0.1:1:10; a second one goes down
+    #[arg(long, num_args = 2, value_names = ["NAME", "FROM:TO:N"], allow_hyphen_values = true, action = clap::ArgAction::Append,
+          conflicts_with_all = ["samples", "share", "resume", "time", "debug_pixel", "crop"])]
+    sweep: Vec<String>,
+    #[command(flatten)]
+    screen: ScreenArgs,
     /// Print what shaders say at this pixel, layer by layer, and render nothing
     #[arg(long, num_args = 2, value_names = ["X", "Y"])]
     debug_pixel: Vec<u32>,
@@ -63,6 +79,9 @@ pub struct RenderArgs {
     /// Keep what there is every S seconds, for --resume; 0 keeps nothing before the end or a signal
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = checkpoint)]
     checkpoint: f64,
+    /// Do not hold room on the disk for the picture while it renders
+    #[arg(long)]
+    no_hold: bool,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u32,
@@ -90,6 +109,12 @@ pub struct RenderArgs {
     /// Soften the terminator of sheen by eq. 4 of the paper: true or false
     #[arg(long, default_value_t = true, action = clap::ArgAction::Set, value_name = "BOOL")]
     softening: bool,
+    /// Render W x H pixels alone, from the pixel X Y of the picture on
+    #[arg(long, num_args = 4, value_names = ["X", "Y", "W", "H"])]
+    crop: Vec<u32>,
+    /// How samples count for pixels: tent (the least noise), box (no two pixels share noise, for denoisers) or blackman-harris
+    #[arg(long, default_value = "tent")]
+    filter: Filter,
     /// Send every sample through its pixel's centre
     #[arg(long)]
     no_jitter: bool,
@@ -168,14 +193,14 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     // To look at one pixel no image is needed.
     let debug = <[u32; 2]>::try_from(&args.debug_pixel[..]).ok();
     let path = match (path, debug) {
-        (None, Some(_)) => std::path::Path::new(""),
+        (None, Some(_)) => Path::new(""),
         (path, _) => path.ok_or_else(none)?,
     };
     if debug.is_none() {
         check_output(args, path)?;
     }
-    if args.res.len() > 2 || args.debug_pixel.len() > 2 {
-        let text = "error: --res and --debug-pixel are given once\n  help: take one of them out";
+    if args.res.len() > 2 || args.debug_pixel.len() > 2 || args.crop.len() > 4 {
+        let text = "error: --res, --crop and --debug-pixel are given once\n  help: take one of them out";
         return Err(Failure::Usage(text.to_owned()));
     }
     if output::is_standard_output(path) {
@@ -184,8 +209,10 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let loading = TimeBound::new(start, args.time, "while the scene was made ready");
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     args.testrender.note();
-    let compiler = ShaderFiles::new(args.compile.compiler()?).lenient(!args.strict);
-    let mut scene = Scene::load(&args.scene, &args.path, &compiler).map_err(Failure::of_scene)?;
+    let mut shaders = ShaderFiles::new(args.compile.compiler()?).lenient(!args.strict);
+    let sheet = sheet(args)?;
+    shaders.set_params(sheet.first());
+    let mut scene = sheet.subject.load(&shaders)?;
     let textures = args.texture_memory.map(|megabytes| megabytes.saturating_mul(1 << 20));
     if let Some(bytes) = textures.or(args.compile.memory.map(|bytes| bytes / 2)) {
         scene.textures = Arc::new(scene.textures.limited(bytes));
@@ -194,6 +221,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         tell(&format!("{warning}\n"));
     }
     let mut settings = settings_for(args, &scene, start)?;
+    if !sheet.sweeps.is_empty() {
+        settings = sheet.settings(&settings, !args.res.is_empty());
+    }
     if let Some(tolerance) = args.tolerance {
         settings.closure = chosen(args, tolerance, settings.closure);
     }
@@ -202,25 +232,78 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let mut renderer = Renderer::new(&scene, &settings).map_err(Failure::of_render)?;
     drop(loading);
-    if !renderer.plan().gives_light() {
-        tell("warning: nothing in the scene gives light, so it is black\n");
-    }
+    warn_of_black(&renderer, &sheet.subject);
     if let Some(pixel) = debug {
         return debug_pixel(&renderer, pixel);
     }
+    if !sheet.sweeps.is_empty() {
+        return render_sheet(args, &sheet, (renderer, &scene, &mut shaders), path, start);
+    }
     go_on(args, &mut renderer)?;
     let every = Some(args.checkpoint).filter(|seconds| *seconds > 0.0);
-    let keeping = Keeping { output: path, every, parts: args.leaves_part(), resumed: args.resume.as_deref() };
+    let screen = args.screen.screen();
+    let keeping = Keeping { output: path, every, parts: args.leaves_part(), resumed: args.resume.as_deref(), screen };
+    let room = if args.no_hold { None } else { Some(hold(path, &renderer, args.leaves_part())?) };
     let signals = Signals::listen(renderer.stop())?;
     let outcome = keeping.render(&mut renderer, &signals)?;
     let about = renderer.about();
     pass_on(&about.reports);
-    keeping.write(&renderer, outcome)?;
+    keeping.write(&renderer, outcome, room)?;
     if let Some(status) = signals.asked().filter(|_| !outcome.done) {
         return Err(Failure::Stopped(status));
     }
     tell(&last_line(&about, renderer.settings(), path, start.elapsed().as_secs_f64()));
     Ok(())
+}
+
+/// Values of parameters, and the sheet of those that are swept; a sheet without a sweep is a picture.
+fn sheet(args: &RenderArgs) -> Result<Sheet<'_>, Failure> {
+    let subject = Subject { argument: &args.scene, search: &args.path };
+    let fixed = args.param.chunks(2).map(|pair| (subject.param(&pair[0]), pair[1].clone())).collect();
+    let sweeps = args.sweep.chunks(2).map(|pair| Sweep::read(&pair[0], &pair[1]));
+    let sweeps =
+        sweeps.collect::<Result<Vec<_>, _>>().map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    if sweeps.len() > 2 {
+        return Err(Failure::Usage("error: --sweep is given twice at most, across and down".to_owned()));
+    }
+    Ok(Sheet { subject, fixed, sweeps })
+}
+
+/// Renders a sheet and writes it, also as far as it has come when it is stopped.
+fn render_sheet(
+    args: &RenderArgs,
+    sheet: &Sheet,
+    (renderer, scene, shaders): (Renderer, &Scene, &mut ShaderFiles),
+    path: &Path,
+    start: Instant,
+) -> Result<(), Failure> {
+    let signals = Signals::listen(renderer.stop())?;
+    let image = sheet.render(renderer, scene, shaders, &signals)?;
+    pass_on(&image.about.reports);
+    output::write_as(&image, path, &args.screen.screen()).map_err(|error| Failure::Usage(format!("error: {error}")))?;
+    if let Some(status) = signals.asked() {
+        tell(&format!("stopped: {} holds the cells that were done\n", path.display()));
+        return Err(Failure::Stopped(status));
+    }
+    let (cells, seconds) = (sheet.cells(), start.elapsed().as_secs_f64());
+    tell(&format!("{}: {} x {}, {cells} cells, {seconds:.2} s\n", path.display(), image.width, image.height));
+    Ok(())
+}
+
+/// Says what must be black.
+fn warn_of_black(renderer: &Renderer, subject: &Subject) {
+    if !renderer.plan().gives_light() {
+        tell("warning: nothing in the scene gives light, so it is black\n");
+    }
+    let mut black = renderer.plan().black(renderer.scene());
+    if subject.is_shader() && black.next().is_some() {
+        let file = subject.argument;
+        tell(&format!("{file}: warning: the shader gives `Ci` no closure and puts nothing else out, so it is black\n"));
+    }
+    for material in black.filter(|_| !subject.is_shader()) {
+        let (place, name) = (&material.place, &material.name);
+        tell(&format!("{place}: warning: shader group `{name}` gives `Ci` no closure, so what it shades is black\n"));
+    }
 }
 
 /// The settings of the command and the scene together.
@@ -238,6 +321,10 @@ fn settings_for(args: &RenderArgs, scene: &Scene, start: Instant) -> Result<Sett
     if let ([], Some(stated)) = (&args.res[..], scene.options.resolution) {
         [settings.width, settings.height] = stated;
     }
+    if let Ok([x, y, width, height]) = <[u32; 4]>::try_from(&args.crop[..]) {
+        settings.frame = Some(Frame { size: [settings.width, settings.height], at: [x, y] });
+        (settings.width, settings.height) = (width, height);
+    }
     settings.threads = capped(args.threads);
     settings.seconds = args.time.map(|seconds| time_to_trace(seconds, start, &settings));
     Ok(settings)
@@ -246,15 +333,18 @@ fn settings_for(args: &RenderArgs, scene: &Scene, start: Instant) -> Result<Sett
 /// Goes on from the part of `--resume`, if there is one.
 fn go_on(args: &RenderArgs, renderer: &mut Renderer) -> Result<(), Failure> {
     let Some(file) = &args.resume else { return Ok(()) };
-    if !args.compile.access()?.covers(file) {
-        return Err(Failure::Usage(format!("error: {} is not in the sandbox", file.display())));
-    }
-    let part = part::read(file).map_err(|error| Failure::Usage(format!("error: {error}")))?;
+    let part = part_of(&args.compile.access()?, file)?;
     renderer.resume(part).map_err(|error| Failure::Wrong(format!("error: {error}")))
 }
 
+/// Holds room on the disk for what the render will write.
+fn hold(path: &std::path::Path, renderer: &Renderer, part: bool) -> Result<Room, Failure> {
+    let help = "help: make room, name a file elsewhere with -o, or render with --no-hold and hope";
+    output::hold(path, renderer.settings(), part).map_err(|error| Failure::Usage(format!("error: {error}\n  {help}")))
+}
+
 /// Says before the render what could not be written after it.
-fn check_output(args: &RenderArgs, path: &std::path::Path) -> Result<(), Failure> {
+fn check_output(args: &RenderArgs, path: &Path) -> Result<(), Failure> {
     let format = output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
     let usage = |text: &str| Err(Failure::Usage(format!("error: {text}")));
     if args.samples.as_ref().is_some_and(|ranges| ranges.iter().count() != 1) {
@@ -270,7 +360,7 @@ fn check_output(args: &RenderArgs, path: &std::path::Path) -> Result<(), Failure
 
 /// Prints what shaders say at a pixel, with the name of the layer before the first word of each.
 fn debug_pixel(renderer: &Renderer, [x, y]: [u32; 2]) -> Result<(), Failure> {
-    let Settings { width, height, .. } = *renderer.settings();
+    let [width, height] = renderer.settings().whole_frame().size;
     if x >= width || y >= height {
         return Err(Failure::Usage(format!("error: there is no pixel {x} {y} in a picture of {width} x {height}")));
     }
@@ -299,6 +389,7 @@ fn settings(args: &RenderArgs) -> Settings {
         threads: args.threads,
         max_bounces: args.max_bounces.unwrap_or(defaults.max_bounces),
         jitter: !args.no_jitter,
+        filter: args.filter,
         alpha: args.alpha,
         light_choice: args.light_choice,
         light_points: args.light_points,

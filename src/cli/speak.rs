@@ -20,17 +20,17 @@ pub fn leave_output() {
 
 /// Prints to standard output, without control characters. A pipe that closes early is no reason to complain; a full disk is, at the end.
 pub fn say(text: &str) {
-    say_as_it_is(&visible(text));
+    say_as_it_is(visible(text).as_bytes());
 }
 
 /// The same for text that is data, such as the output of the preprocessor.
-pub fn say_as_it_is(text: &str) {
+pub fn say_as_it_is(text: &[u8]) {
     if TAKEN.load(Ordering::Relaxed) {
-        let _ = std::io::stderr().write_all(text.as_bytes());
+        let _ = std::io::stderr().write_all(text);
         return;
     }
     let mut out = std::io::stdout();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(text).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => LOST.store(true, Ordering::Relaxed),
         _ => {}
     }

@@ -6,7 +6,7 @@ use super::shader::Shader;
 use crate::closure::Library;
 use crate::exec::{Group, Locate, ReportPlace};
 use crate::ir::lower::{Binding, Layer, Lazy, LowerOptions, SPANS_PER_LAYER, lower};
-use crate::lang::types::{Base, Type};
+use crate::lang::types::{Base, Length, Type};
 use crate::ops::working_space::WorkingSpace;
 use crate::optimize::{OptimizeOptions, optimize};
 use std::sync::Arc;
@@ -89,18 +89,18 @@ impl GroupBuilder {
         self.bind(name, binding)
     }
 
-    /// Sets a parameter of the last layer from text: numbers with commas or spaces between, or a string as it is.
+    /// Sets a parameter of the last layer from text: numbers with commas or spaces between, or a string as it is. One number is enough
+    /// for a color, point, vector or normal of three equal ones.
     pub fn text(self, name: &str, text: &str) -> Self {
-        let string = |layer: &Layer| {
-            let ty = find_type(layer, name).ok();
-            ty.is_some_and(|ty| ty.element_type().base() == Some(Base::String))
-        };
+        let ty = self.layers.last().and_then(|layer| find_type(layer, name).ok());
+        let string = ty.as_ref().is_some_and(|ty| ty.element_type().base() == Some(Base::String));
+        let triple =
+            ty.is_some_and(|ty| ty.length == Length::Single && ty.base().is_some_and(|base| base.components() == 3));
         let parts = text.split([',', ' ']).filter(|part| !part.is_empty());
         let numbers: Result<Vec<f64>, _> = parts.map(str::parse).collect();
         match numbers {
-            Ok(numbers) if !numbers.is_empty() && !self.layers.last().is_some_and(string) => {
-                self.bind(name, Binding::Numbers(numbers))
-            }
+            Ok(numbers) if numbers.len() == 1 && triple => self.bind(name, Binding::Numbers(numbers.repeat(3))),
+            Ok(numbers) if !numbers.is_empty() && !string => self.bind(name, Binding::Numbers(numbers)),
             _ => self.bind(name, Binding::Strings(vec![text.to_owned()])),
         }
     }

@@ -53,7 +53,7 @@ pub struct Checked {
 
 impl Checked {
     /// Drops the warnings that the text has asked to be left out.
-    fn drop_quiet(&mut self) {
+    pub(super) fn drop_quiet(&mut self) {
         let sources = &self.sources;
         self.diagnostics.list.retain(|d| d.severity == Severity::Error || !sources.is_quiet(d.span));
     }

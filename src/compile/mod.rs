@@ -9,6 +9,7 @@ mod error;
 mod fit;
 mod recipe;
 mod shader;
+mod writing;
 
 pub use builder::GroupBuilder;
 pub use compiler::{Checked, Compiler, STDOSL, compile};

@@ -2,6 +2,7 @@
 
 use crate::check::typed;
 use crate::closure::Library;
+use crate::lang::path::root;
 use std::sync::Arc;
 use velour_grammar::Sources;
 
@@ -19,5 +20,16 @@ impl Shader {
     /// The name it was declared with.
     pub fn name(&self) -> &str {
         &self.typed.name
+    }
+
+    /// The names of its parameters, in the order of the text.
+    pub fn params(&self) -> impl Iterator<Item = &str> {
+        let variables = &self.typed.variables;
+        self.typed.params.iter().map(|param| variables[param.var.0 as usize].name.as_str())
+    }
+
+    /// Does it have the parameter that a path, such as `name`, `name.field` or `name[2]`, leads into?
+    pub fn has(&self, path: &str) -> bool {
+        self.params().any(|name| name == root(path))
     }
 }

@@ -21,6 +21,13 @@ enum Kind {
     File(PathBuf),
 }
 
+/// Room on a disk that is held for a file.
+#[derive(Debug)]
+pub struct Room {
+    destination: Destination,
+    held: Option<Temporary>,
+}
+
 /// What a file is written to: it can be sought in, wherever it goes.
 #[derive(Debug)]
 pub struct Sink(Bytes);
@@ -82,6 +89,28 @@ impl Destination {
     /// # Errors
     /// Those of `fill`, and of the disk.
     pub fn write(&self, fill: impl FnOnce(&mut Sink) -> io::Result<()>) -> io::Result<()> {
+        self.write_into(None, fill)
+    }
+
+    /// Holds so many bytes of the disk for the file until it is written, by [`Room::write`] and nobody else. Nothing is held for streams,
+    /// for files that are written over, and where the system cannot.
+    ///
+    /// # Errors
+    /// There is not so much room.
+    pub fn hold(self, bytes: u64) -> io::Result<Room> {
+        let mut held = None;
+        if let Some(target) = self.file() {
+            let before = std::fs::metadata(target).ok();
+            if before.as_ref().is_none_or(|found| names_of(found) == 1)
+                && let Ok(mut temporary) = Temporary::beside(target, before.is_some())
+            {
+                held = temporary.hold(bytes)?.then_some(temporary);
+            }
+        }
+        Ok(Room { destination: self, held })
+    }
+
+    fn write_into(&self, held: Option<Temporary>, fill: impl FnOnce(&mut Sink) -> io::Result<()>) -> io::Result<()> {
         let target = match &self.kind {
             Kind::File(target) => target,
             Kind::Standard => {
@@ -97,9 +126,10 @@ impl Destination {
         };
         let before = std::fs::metadata(target).ok();
         if before.as_ref().is_some_and(|found| names_of(found) > 1) {
+            drop(held);
             return overwrite(target, &in_memory(fill)?);
         }
-        let temporary = match Temporary::beside(target, before.is_some()) {
+        let temporary = match held.map_or_else(|| Temporary::beside(target, before.is_some()), Ok) {
             Err(_) if before.is_some() => return overwrite(target, &in_memory(fill)?),
             temporary => temporary?,
         };
@@ -108,6 +138,21 @@ impl Destination {
         let Sink(Bytes::File(writer)) = sink else { return Ok(()) };
         let temporary = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
         temporary.finish(target, before.as_ref())
+    }
+}
+
+impl Room {
+    /// Is anything held?
+    pub fn is_held(&self) -> bool {
+        self.held.is_some()
+    }
+
+    /// [`Destination::write`] into what is held; what the file does not need is given back.
+    ///
+    /// # Errors
+    /// Those of `fill`, and of the disk.
+    pub fn write(self, fill: impl FnOnce(&mut Sink) -> io::Result<()>) -> io::Result<()> {
+        self.destination.write_into(self.held, fill)
     }
 }
 

@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 pub struct Temporary {
     file: File,
     name: Option<PathBuf>,
+    /// Room of the disk is held for it, which may be more than it needs.
+    holds: bool,
 }
 
 impl Temporary {
@@ -17,7 +19,7 @@ impl Temporary {
     pub fn beside(target: &Path, private: bool) -> io::Result<Self> {
         let folder = folder_of(target);
         if let Some(file) = nameless(folder) {
-            return Ok(Temporary { file, name: None });
+            return Ok(Temporary { file, name: None, holds: false });
         }
         let name = unknown_name(target);
         let mut options = OpenOptions::new();
@@ -28,13 +30,26 @@ impl Temporary {
         }
         let _ = private;
         let file = options.open(&name)?;
-        Ok(Temporary { file, name: Some(name) })
+        Ok(Temporary { file, name: Some(name), holds: false })
+    }
+
+    /// Holds so many bytes of the disk for it; false where that cannot be, or would be left behind by a process that is killed.
+    ///
+    /// # Errors
+    /// The disk, or what its owner may have of it, has too little room.
+    pub fn hold(&mut self, bytes: u64) -> io::Result<bool> {
+        self.holds = self.name.is_none() && allocate(&self.file, bytes)?;
+        Ok(self.holds)
     }
 
     /// Puts it, flushed to the disk, in the place of `target`, with the rights and the owner of what was there.
     pub fn finish(mut self, target: &Path, before: Option<&Metadata>) -> io::Result<()> {
         if let Some(before) = before {
             take_over(&self.file, before)?;
+        }
+        if self.holds {
+            // What was held beyond its end is given back.
+            self.file.set_len(self.file.metadata()?.len())?;
         }
         self.file.sync_all()?;
         if self.name.is_none() {
@@ -125,6 +140,23 @@ fn nameless(folder: &Path) -> Option<File> {
     let mode = Mode::from_raw_mode(0o666);
     let open = || open(folder, OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC, mode);
     named.then(|| open().ok().map(File::from)).flatten()
+}
+
+/// Takes blocks of the disk for a file, whose length stays; false where the file system does not do that.
+#[cfg(target_os = "linux")]
+fn allocate(file: &File, bytes: u64) -> io::Result<bool> {
+    use rustix::fs::{FallocateFlags, fallocate};
+    use rustix::io::Errno;
+    match fallocate(file, FallocateFlags::KEEP_SIZE, 0, bytes.max(1)) {
+        Ok(()) => Ok(true),
+        Err(full @ (Errno::NOSPC | Errno::DQUOT)) => Err(full.into()),
+        Err(_) => Ok(false),
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn allocate(_: &File, _: u64) -> io::Result<bool> {
+    Ok(false)
 }
 
 #[cfg(target_os = "linux")]

@@ -1,6 +1,9 @@
-//! What a closure's declaration says, as text for people: the part of `velour info` that is about closures.
+//! What closures, builtins and functions are, as text for people: what `velour info` prints and editors show.
 
+use super::builtins::{Formal, Signature};
 use super::closures::{Claim, ClosureSpec, ParamKind, ParamSpec, Waiver};
+use velour_grammar::ast::FunctionDecl;
+use velour_grammar::print::print_type;
 
 /// A whole declaration: signature, documentation, parameters, and what is not promised. One line each, indented by four.
 pub fn closure_text(spec: &ClosureSpec) -> String {
@@ -24,6 +27,36 @@ pub fn closure_head(spec: &ClosureSpec) -> String {
     format!("{}({})", spec.name, all.join(", "))
 }
 
+/// An overload of a builtin: `float dot(vector, vector)`.
+pub fn signature_text(name: &str, signature: &Signature) -> String {
+    let formal = |(formal, output): &(Formal, bool)| {
+        let ty = match formal {
+            Formal::Type(ty) => ty.to_string(),
+            Formal::Any => "any".to_owned(),
+            Formal::AnyArray => "any[]".to_owned(),
+        };
+        if *output { format!("output {ty}") } else { ty }
+    };
+    let mut formals: Vec<String> = signature.formals.iter().map(formal).collect();
+    if signature.variadic {
+        formals.push("...".to_owned());
+    }
+    if signature.options {
+        formals.push("[\"name\", value]...".to_owned());
+    }
+    format!("{} {name}({})", signature.returns, formals.join(", "))
+}
+
+/// The head of a function: `float f(float x, output color y)`.
+pub fn function_text(function: &FunctionDecl) -> String {
+    let params = function.params.iter().map(|param| {
+        let output = if param.output { "output " } else { "" };
+        format!("{output}{} {}", print_type(&param.ty), param.name.name)
+    });
+    let params: Vec<String> = params.collect();
+    format!("{} {}({})", print_type(&function.return_type), function.name.name, params.join(", "))
+}
+
 /// What a closure does not promise, which `velour verify` measures.
 fn promises(spec: &ClosureSpec) -> String {
     let mut out = String::new();
@@ -38,7 +71,8 @@ fn promises(spec: &ClosureSpec) -> String {
     out
 }
 
-fn kind_name(kind: ParamKind) -> &'static str {
+/// The type of a closure's parameter in the language.
+pub fn kind_name(kind: ParamKind) -> &'static str {
     match kind {
         ParamKind::Float => "float",
         ParamKind::Int => "int",

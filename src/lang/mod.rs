@@ -5,5 +5,6 @@ pub mod closures;
 pub mod describe;
 pub mod globals;
 pub mod path;
+pub mod sentences;
 pub mod symbols;
 pub mod types;

@@ -113,6 +113,13 @@ pub struct Type {
     pub length: Length,
 }
 
+impl Default for Type {
+    /// No value.
+    fn default() -> Self {
+        Type::VOID
+    }
+}
+
 impl Type {
     /// A single value of a base type.
     pub const fn of(base: Base) -> Type {

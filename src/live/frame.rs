@@ -2,7 +2,7 @@
 
 use crate::math::elementary::exp2;
 use crate::render::Image;
-use crate::render::output::srgb;
+use crate::render::srgb;
 use std::sync::LazyLock;
 
 /// Eight bits a channel, red, green, blue and 255, row by row from the upper left.

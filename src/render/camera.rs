@@ -20,7 +20,7 @@ pub struct RayCamera {
 
 impl RayCamera {
     /// Sets `camera` up for an image of `width` x `height` pixels.
-    pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
+    pub fn new(camera: &Camera, [width, height]: [u32; 2]) -> Self {
         let k = tan(camera.fov.to_radians() * 0.5);
         let across = camera.direction.cross(camera.up).normalize() * (k * width as f32 / height as f32);
         // As in testrender, k is the whole height of the film at distance 1, so a picture spans tan(fov/2), not twice

@@ -1,19 +1,24 @@
 //! What the shaders of one pixel say and make, in the order in which they say it.
 
 use super::accel::{Hit, NOTHING, Ray};
+use super::host::host;
 use super::points::{fill, fill_sky};
 use super::renderer::Renderer;
 use super::segment::{Segment, ray_type};
 use crate::exec::{Machine, Points, Report};
+use std::sync::Arc;
 
 impl Renderer {
     /// Runs the shaders of what the center of a pixel shows, once, and gives what they say, layer by layer; nothing where the pixel
     /// shows nothing. No light is followed on from there.
     pub fn pixel_reports(&self, x: u32, y: u32) -> Vec<Report> {
-        let mut machine = Machine::with_host(self.world().host.clone());
+        let world = self.world();
+        // One point is soon done, also of a render that was stopped.
+        let host = host(&world.scene.camera, &world.settings, &world.scene.textures, Some(world.accel.clone()));
+        let mut machine = Machine::with_host(Arc::new(host));
         let (material, points) = self.point_of(x, y);
         if let Some(material) = material {
-            machine.shade(&self.world().scene.materials[material].surface, &points);
+            machine.shade(&world.scene.materials[material].surface, &points);
         }
         machine.take_reports()
     }

@@ -1,5 +1,6 @@
 //! Why a scene cannot be rendered, or its picture not written; what a user may get wrong has a stable code.
 
+use crate::limits::FRAME_SIDE;
 use crate::scene::CameraFlaw;
 use std::fmt;
 use std::path::PathBuf;
@@ -25,6 +26,8 @@ pub enum SettingsError {
     Batches,
     /// R0106: a render that stops by noise or time and does not begin with its first sample.
     First,
+    /// R0107: a picture that is not inside of its frame.
+    Frame,
 }
 
 /// What keeps a scene from being rendered.
@@ -104,6 +107,7 @@ impl SettingsError {
             SettingsError::Seconds => "R0104",
             SettingsError::Batches => "R0105",
             SettingsError::First => "R0106",
+            SettingsError::Frame => "R0107",
         }
     }
 }
@@ -119,6 +123,9 @@ impl fmt::Display for SettingsError {
             SettingsError::Seconds => f.write_str("the time to stop at must be a number of seconds above 0"),
             SettingsError::Batches => f.write_str("tile size, wave size and batch width must be above 0"),
             SettingsError::First => f.write_str("a render that stops by noise or time begins with sample 0"),
+            SettingsError::Frame => {
+                write!(f, "a picture must lie in its frame, which has {FRAME_SIDE} pixels a side at most")
+            }
         }
     }
 }
@@ -144,6 +151,13 @@ pub enum OutputError {
         /// The folder.
         path: PathBuf,
     },
+    /// R0205: the disk has too little room.
+    NoRoom {
+        /// The file.
+        path: PathBuf,
+        /// Bytes that it may take.
+        bytes: u64,
+    },
     /// R0204: the file cannot be written.
     Unwritable {
         /// The file.
@@ -164,6 +178,7 @@ impl OutputError {
             OutputError::NoFolder { .. } => "R0202",
             OutputError::IsFolder { .. } => "R0203",
             OutputError::Unwritable { .. } => "R0204",
+            OutputError::NoRoom { .. } => "R0205",
         }
     }
 }
@@ -177,6 +192,10 @@ impl fmt::Display for OutputError {
             }
             OutputError::NoFolder { folder } => write!(f, "the folder `{}` is not there", folder.display()),
             OutputError::IsFolder { path } => write!(f, "`{}` is a folder", path.display()),
+            OutputError::NoRoom { path, bytes } => {
+                let (megabytes, shown) = (bytes.div_ceil(1 << 20), path.display());
+                write!(f, "the disk has no room for `{shown}`, which may take {megabytes} MB")
+            }
             OutputError::Unwritable { path, reason } => write!(f, "cannot write `{}`: {reason}", path.display()),
         }
     }

@@ -8,6 +8,7 @@
 //! Decision (2026-11-29): tiers that every sample finds by itself, instead of one grid chosen from the exposure of the picture,
 //! because then parts of a picture need not agree on an exposure before they have seen it, and none is too bright or too dark.
 
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Red, green, blue, alpha and weight.
@@ -24,6 +25,9 @@ const TOP: i32 = 11;
 
 /// The tiers that samples go to: from below the least single to above the largest.
 const TIERS: Range<i32> = -5..5;
+
+/// The places of digits: the tiers that samples go to, and two for what is carried from them.
+const PLACES: usize = (TIERS.end - TIERS.start) as usize + 2;
 
 /// Samples a pixel after which what a sum has above its tier is carried to the next: a sample adds to a pixel, from all pixels
 /// around it, four times its light at the most.
@@ -105,11 +109,16 @@ impl Sums {
     pub fn settle(&mut self) {
         for number in TIERS.start..=TIERS.end {
             let Some(at) = self.tiers.iter().position(|tier| tier.number == number) else { continue };
-            let carried: Vec<[i64; PARTS]> =
-                self.tiers[at].sums.iter_mut().map(|sum| sum.each_mut().map(carry)).collect();
-            if carried.iter().any(|carried| *carried != [0; PARTS]) {
-                let above = &mut self.tier(number + 1).sums;
-                above.iter_mut().zip(&carried).for_each(|(sum, more)| plus(sum, more));
+            let full = |sum: &i64| sum.unsigned_abs() >= 1 << (STEP - 1);
+            if !self.tiers[at].sums.as_flattened().iter().any(full) {
+                continue;
+            }
+            self.tier(number + 1);
+            let next = self.tiers.iter().position(|tier| tier.number == number + 1).unwrap_or(at);
+            if let Ok([below, above]) = self.tiers.get_disjoint_mut([at, next]) {
+                below.sums.iter_mut().zip(&mut above.sums).for_each(|(sum, above)| {
+                    plus(above, &sum.each_mut().map(carry));
+                });
             }
         }
     }
@@ -119,14 +128,6 @@ impl Sums {
         for tier in &mut other.tiers {
             let sums = &mut self.tier(tier.number).sums;
             sums.iter_mut().zip(&mut tier.sums).for_each(|(sum, more)| plus(sum, &std::mem::take(more)));
-        }
-    }
-
-    /// Adds the sums `from` of `other` to those that begin at `to`.
-    pub fn add_some(&mut self, to: usize, other: &Sums, from: Range<usize>) {
-        for tier in &other.tiers {
-            let sums = &mut self.tier(tier.number).sums[to..to + from.len()];
-            sums.iter_mut().zip(&tier.sums[from.clone()]).for_each(|(sum, more)| plus(sum, more));
         }
     }
 
@@ -141,15 +142,56 @@ impl Sums {
         std::array::from_fn(|part| self.value_of(i, part))
     }
 
-    /// The tiers, the settled sums of which are a function of their exact values: those that hold anything, and tier 0; by number.
-    pub fn settled(mut self) -> Vec<Tier> {
-        self.settle();
-        self.tiers.retain(|tier| tier.number == 0 || tier.sums.iter().any(|sum| *sum != [0; PARTS]));
-        self.tiers.sort_unstable_by_key(|tier| tier.number);
-        self.tiers
+    /// Sums of `len` in the tiers of `numbers`, with more for each piece of `piece` of them: `fill` is told the number of the tier and of
+    /// the piece, and runs on all threads.
+    pub fn gather(
+        &mut self,
+        len: usize,
+        piece: usize,
+        numbers: impl Iterator<Item = i32>,
+        fill: impl Fn(i32, usize, &mut [[i64; PARTS]]) + Sync,
+    ) {
+        self.open(len);
+        for number in numbers {
+            self.tier(number);
+        }
+        for tier in &mut self.tiers {
+            let pieces = tier.sums.par_chunks_mut(piece).enumerate();
+            pieces.for_each(|(place, sums)| fill(tier.number, place, sums));
+        }
     }
 
-    /// Sums of the tiers of [`settled`](Sums::settled), all of one length.
+    /// The tiers there are, by number.
+    pub fn numbers(&self) -> impl Iterator<Item = i32> {
+        self.tiers.iter().map(|tier| tier.number)
+    }
+
+    /// The sums of a tier, where there is one of this number.
+    pub fn of_tier(&self, number: i32) -> Option<&[[i64; PARTS]]> {
+        self.tiers.iter().find(|tier| tier.number == number).map(|tier| &tier.sums[..])
+    }
+
+    /// The tiers in which settled sums may have anything.
+    pub fn settled_tiers(&self) -> Range<i32> {
+        let first = self.numbers().min().unwrap_or(0);
+        first..self.numbers().max().map_or(0, above)
+    }
+
+    /// Tells of one sum what it has in each tier when it is settled, where that is anything: tier, part and sum, which are a function
+    /// of its exact value.
+    #[inline]
+    pub fn settled(&self, i: usize, mut each: impl FnMut(i32, usize, i64)) {
+        for part in 0..PARTS {
+            let (digits, places) = self.digits(i, part);
+            for place in places {
+                if digits[place] != 0 {
+                    each(TIERS.start + place as i32, part, digits[place]);
+                }
+            }
+        }
+    }
+
+    /// Sums of settled tiers, all of one length.
     pub fn of(tiers: Vec<Tier>) -> Option<Self> {
         let [first, rest @ ..] = &tiers[..] else { return None };
         let numbers = tiers.iter().map(|tier| tier.number);
@@ -168,22 +210,42 @@ impl Sums {
 
     /// The digits of a sum, from the highest on, in as many roundings as there are digits.
     fn value_of(&self, i: usize, part: usize) -> f64 {
-        const COUNT: usize = (TIERS.end - TIERS.start) as usize + 3;
-        let mut digits = [0i64; COUNT];
+        let (digits, places) = self.digits(i, part);
+        let least = TIERS.start + places.start as i32;
+        let value = places.rev().fold(0.0, |value, place| value * power(STEP) + digits[place] as f64);
+        value * power(STEP * least - FRACTION)
+    }
+
+    /// The digits of a sum, tier by tier from the least on, and the places of those that are not zero for want of a tier.
+    #[inline]
+    fn digits(&self, i: usize, part: usize) -> ([i64; PLACES], Range<usize>) {
+        let mut digits = [0i64; PLACES];
+        let (mut first, mut end) = (PLACES, 0);
         for tier in &self.tiers {
-            digits[(tier.number - TIERS.start) as usize] = tier.sums[i][part];
+            let place = (tier.number - TIERS.start) as usize;
+            digits[place] = tier.sums[i][part];
+            (first, end) = (first.min(place), end.max((above(tier.number) - TIERS.start) as usize));
         }
-        for k in 0..COUNT - 1 {
-            digits[k + 1] += carry(&mut digits[k]);
+        for place in first..end.saturating_sub(1) {
+            digits[place + 1] += carry(&mut digits[place]);
         }
-        let value = digits.iter().rev().fold(0.0, |value, digit| value * power(STEP) + *digit as f64);
-        value * power(STEP * TIERS.start - FRACTION)
+        (digits, first.min(end)..end)
     }
 }
 
 /// Is there a tier of this number: one that samples go to, or one of the two for what is carried from them?
 pub fn is_tier(number: i32) -> bool {
     (TIERS.start..=TIERS.end + 1).contains(&number)
+}
+
+/// One behind the last tier that what is in a tier may be carried to: a sum of 64 bits reaches the second one above.
+fn above(number: i32) -> i32 {
+    (number + 3).min(TIERS.end + 2)
+}
+
+/// The tier that is for carries alone, above the one that may have samples as well.
+pub fn last_tier() -> i32 {
+    TIERS.end + 1
 }
 
 /// Where a sample goes.
@@ -207,7 +269,8 @@ fn add(sums: &mut [[i64; PARTS]], place: &Place, value: [f64; PARTS]) {
     }
 }
 
-fn plus(sum: &mut [i64; PARTS], more: &[i64; PARTS]) {
+/// Adds sums to others.
+pub fn plus(sum: &mut [i64; PARTS], more: &[i64; PARTS]) {
     (0..PARTS).for_each(|k| sum[k] += more[k]);
 }
 

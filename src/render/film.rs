@@ -12,8 +12,10 @@
 //! sums kept apart by source pixel did not.
 
 use super::exact::{self, PARTS, Sums};
-use super::settings::{HALVES, Settings};
+use super::settings::{Filter, HALVES, Settings};
 use super::tile::Tile;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// Which part of a sum is alpha.
 const ALPHA: usize = 3;
@@ -24,6 +26,8 @@ pub struct TileSums {
     halves: [HalfSums; HALVES],
     /// Sums in a row, the rim's included.
     across: usize,
+    /// Samples count for their own pixel alone.
+    own: bool,
 }
 
 /// The sums of one half, row by row, and how many samples each pixel has had.
@@ -35,7 +39,8 @@ struct HalfSums {
 
 impl TileSums {
     /// Makes room for `tile`, in the first `halves`; what is there stays.
-    pub fn open(&mut self, tile: &Tile, halves: usize) {
+    pub fn open(&mut self, tile: &Tile, halves: usize, filter: Filter) {
+        self.own = filter != Filter::Tent;
         let (across, down) = (tile.width as usize + 2, tile.height as usize + 2);
         self.across = across;
         self.halves[..halves].iter_mut().for_each(|half| half.sums.open(across * down));
@@ -44,7 +49,7 @@ impl TileSums {
     /// Adds a sample of the tile's pixel (`x`, `y`) that lies at `position` in it, both coordinates in [0, 1].
     #[inline]
     pub fn add(&mut self, half: usize, [x, y]: [u32; 2], position: [f32; 2], light: [f32; 3], alpha: f32) {
-        let ((column, columns), (row, rows)) = (taps(position[0]), taps(position[1]));
+        let [(column, columns), (row, rows)] = if self.own { [OWN; 2] } else { position.map(taps) };
         // Pixel (0, 0) is at (1, 1) of the sums, and tap 1 is the pixel itself.
         let first = (y as usize + row) * self.across + x as usize + column;
         self.halves[half].sums.splat(first, self.across, columns, rows, light, alpha);
@@ -68,6 +73,9 @@ impl TileSums {
     }
 }
 
+/// The own pixel alone.
+const OWN: (usize, [f64; 2]) = (1, [1.0, 0.0]);
+
 /// The first of two neighbouring pixels (0 before, 1 the own) that a place in a pixel counts for, and both weights.
 #[inline]
 fn taps(x: f32) -> (usize, [f64; 2]) {
@@ -81,13 +89,40 @@ fn limited(x: f64) -> f32 {
 }
 
 /// The first `channels` numbers of a pixel of these sums, 3 or 4.
-pub fn means(sum: [f64; PARTS], channels: usize) -> impl Iterator<Item = f32> {
+fn means(sum: [f64; PARTS], channels: usize) -> impl Iterator<Item = f32> {
     let mean = move |k: usize| match if sum[4] > 0.0 { limited(sum[k] / sum[4]) } else { 0.0 } {
         // A clear surface that amplifies makes a sample's share negative.
         alpha if k == ALPHA => alpha.clamp(0.0, 1.0),
         light => light,
     };
     (0..channels).map(mean)
+}
+
+/// Adds the sums of a tile and its rim to those of some rows of a picture of a width, from row `first` on.
+fn add_tile(tile: &Tile, from: &[[i64; PARTS]], rows: &mut [[i64; PARTS]], [width, first]: [usize; 2]) {
+    let (x, y) = (tile.x as usize, tile.y as usize);
+    let (across, down) = (tile.width as usize + 2, tile.height as usize + 2);
+    // The rim may lie outside the picture; nobody looks there.
+    let columns = usize::from(x == 0)..across.min(width + 1 - x);
+    let (start, end) = ((first + 1).saturating_sub(y), (first + rows.len() / width + 1 - y).min(down));
+    for row in start..end {
+        let to = (y + row - 1 - first) * width + x + columns.start - 1;
+        let from = &from[row * across + columns.start..row * across + columns.end];
+        rows[to..].iter_mut().zip(from).for_each(|(sum, more)| exact::plus(sum, more));
+    }
+}
+
+/// The picture of sums, `channels` numbers a pixel, 3 or 4.
+pub fn picture_of(sums: &Sums, channels: usize) -> Vec<f32> {
+    const PIECE: usize = 1 << 12;
+    let mut pixels = vec![0.0; channels * sums.len()];
+    pixels.par_chunks_mut(channels * PIECE).enumerate().for_each(|(piece, pixels)| {
+        for (i, pixel) in pixels.chunks_exact_mut(channels).enumerate() {
+            let mean = means(sums.value(piece * PIECE + i), channels);
+            pixel.iter_mut().zip(mean).for_each(|(channel, mean)| *channel = mean);
+        }
+    });
+    pixels
 }
 
 /// What all tiles have gathered: some 50 bytes a pixel, twice that when there are halves, and as much again while a
@@ -125,10 +160,7 @@ impl Film {
         let samples = |tile: &TileSums| tile.halves[halves.clone()].iter().map(|half| half.samples).sum::<u32>();
         let first = self.tiles.first().map_or(0, samples);
         if self.kept.is_some() || self.tiles.iter().all(|tile| samples(tile) == first) {
-            let sums = self.sums(settings, halves);
-            (0..settings.width as usize * settings.height as usize)
-                .flat_map(|i| means(sums.value(i), channels))
-                .collect()
+            picture_of(&self.sums(settings, halves), channels)
         } else {
             self.shares(settings, halves).into_iter().flat_map(|sum| means(sum, channels)).collect()
         }
@@ -137,21 +169,26 @@ impl Film {
     /// The exact sums of `halves` over the pixels of the picture.
     pub fn sums(&self, settings: &Settings, halves: std::ops::Range<usize>) -> Sums {
         let (width, height) = (settings.width as usize, settings.height as usize);
+        let across = settings.width.div_ceil(settings.tile_size) as usize;
+        let row = settings.tile_size as usize * width;
         let mut sums = self.kept.clone().unwrap_or_default();
-        sums.open(width * height);
-        for (number, tile_sums) in self.tiles.iter().enumerate() {
-            let tile = Tile::number(settings, number);
-            let (x, y) = (tile.x as usize, tile.y as usize);
-            let (across, down) = (tile.width as usize + 2, tile.height as usize + 2);
-            // The rim may lie outside the picture; nobody looks there.
-            let columns = usize::from(x == 0)..across.min(width + 1 - x);
-            for half in &tile_sums.halves[halves.clone()] {
-                for row in usize::from(y == 0)..down.min(height + 1 - y) {
-                    let from = row * across + columns.start..row * across + columns.end;
-                    sums.add_some((y + row - 1) * width + x + columns.start - 1, &half.sums, from);
+        let numbers: BTreeSet<i32> = self
+            .tiles
+            .iter()
+            .flat_map(|tile| tile.halves[halves.clone()].iter().flat_map(|half| half.sums.numbers()))
+            .collect();
+        // A row of tiles gets what is its own, and the rims of the rows above and below.
+        sums.gather(width * height, row, numbers.into_iter(), |number, place, out| {
+            let tiles = across * place.saturating_sub(1)..(across * (place + 2)).min(self.tiles.len());
+            for (tile, tile_sums) in tiles.clone().zip(&self.tiles[tiles]) {
+                let first = place * settings.tile_size as usize;
+                for half in &tile_sums.halves[halves.clone()] {
+                    if let Some(sums) = half.sums.of_tier(number) {
+                        add_tile(&Tile::number(settings, tile), sums, out, [width, first]);
+                    }
                 }
             }
-        }
+        });
         sums
     }
 
@@ -230,7 +267,7 @@ mod tests {
         for number in 0..Tile::count(settings) {
             let tile = Tile::number(settings, number);
             let mut sums = film.take(number);
-            sums.open(&tile, 1);
+            sums.open(&tile, 1, Filter::Tent);
             let side = side(number);
             for i in 0..side * side {
                 let at = [i % side, i / side].map(|k| (k as f32 + 0.5) / side as f32);

@@ -32,14 +32,15 @@ pub fn host(
 ) -> RenderHost {
     let mut host = PlainHost::default();
     let to_common = camera_to_common(camera);
-    let [width, height] = [settings.width as f32, settings.height as f32];
+    let size = settings.whole_frame().size;
+    let [width, height] = size.map(|side| side as f32);
     let screen = multiply(&inverse(&to_common), &projection(camera));
     let ndc = multiply(&screen, &scaled_and_moved([0.5 * height / width, -0.5], [0.5, 0.5]));
     let raster = multiply(&ndc, &scaled_and_moved([width, height], [0.0; 2]));
     let spaces =
         [("camera", to_common), ("screen", inverse(&screen)), ("NDC", inverse(&ndc)), ("raster", inverse(&raster))];
     host.spaces.extend(spaces.map(|(name, matrix)| (name.to_owned(), matrix)));
-    let attributes = camera_attributes([settings.width, settings.height], camera.fov, CLIP, [0.0; 2]);
+    let attributes = camera_attributes(size, camera.fov, CLIP, [0.0; 2]);
     host.attributes.extend(attributes);
     RenderHost { plain: host, textures: textures.clone(), accel, stop: None }
 }
@@ -61,7 +62,7 @@ impl RenderHost {
 
 impl Host for RenderHost {
     fn gives_up(&self) -> bool {
-        self.stop.as_ref().is_some_and(|stop| stop.now())
+        self.stop.as_ref().is_some_and(|stop| stop.cuts())
     }
 
     fn space(&self, name: &str, points: &Points) -> Option<Matrix> {

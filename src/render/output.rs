@@ -2,8 +2,9 @@
 
 use super::error::OutputError;
 use super::image::Image;
-use crate::files::{Destination, Sink};
-use crate::math::elementary::pow;
+use super::settings::Settings;
+use super::view::Screen;
+use crate::files::{Destination, Room, Sink};
 use exr::prelude as exr;
 use std::io::Write;
 use std::path::Path;
@@ -14,7 +15,7 @@ use std::path::Path;
 pub enum Format {
     /// OpenEXR, linear, 32-bit floats.
     Exr,
-    /// PNG, 8 bits, sRGB.
+    /// PNG, 8 bits, by a [`Screen`].
     Png,
     /// Radiance HDR, linear, shared exponent.
     Hdr,
@@ -26,20 +27,69 @@ pub fn check(path: &Path) -> Result<Format, OutputError> {
     look(path).map(|(format, _)| format)
 }
 
-/// Writes `image` to `path` in the format of its extension.
+/// Writes `image` to `path` in the format of its extension; a PNG by the default [`Screen`].
 pub fn write(image: &Image, path: &Path) -> Result<(), OutputError> {
+    write_as(image, path, &Screen::default())
+}
+
+/// The same, for a screen of its own where it is a PNG; the other formats keep linear light as it is.
+pub fn write_as(image: &Image, path: &Path, screen: &Screen) -> Result<(), OutputError> {
+    write_into(image, path, screen, None)
+}
+
+/// The same, into room that is held for it.
+pub fn write_into(image: &Image, path: &Path, screen: &Screen, room: Option<Room>) -> Result<(), OutputError> {
     let format = check(path)?;
-    write_with(path, |sink| match format {
+    write_with(path, room, |sink| match format {
         Format::Exr => write_exr(image, sink),
-        Format::Png => write_png(image, sink),
+        Format::Png => write_png(image, screen, sink),
         Format::Hdr => write_hdr(image, sink),
     })
 }
 
+/// Holds room for what a render of these settings will write to `path`: the picture, or a `part`. Nothing is held for streams, and where
+/// the file system cannot.
+///
+/// # Errors
+/// There is too little room, or the file cannot be written.
+pub fn hold(path: &Path, settings: &Settings, part: bool) -> Result<Room, OutputError> {
+    let (format, destination) = look(path)?;
+    let bytes = most_bytes(format, settings, part);
+    destination.hold(bytes).map_err(|_| OutputError::NoRoom { path: path.to_owned(), bytes })
+}
+
+/// Bytes that a file takes at the most; a part with light of uncommon range may take more.
+fn most_bytes(format: Format, settings: &Settings, part: bool) -> u64 {
+    let (pixels, lines) = (u64::from(settings.width) * u64::from(settings.height), u64::from(settings.height));
+    let channels = if settings.alpha { 4 } else { 3 };
+    let header = 1 << 16;
+    header
+        + match format {
+            // What does not become smaller is kept as it is. A line has an entry in a table and a head.
+            Format::Exr if part => 4 * pixels * (channels + PART_WORDS) + 40 * lines,
+            Format::Exr => 4 * pixels * channels + 20 * lines,
+            // What does not become smaller grows by a few bytes a block of 32 kB.
+            Format::Png => pixels * channels * 1001 / 1000 + lines,
+            // Runs of 128 bytes have a head.
+            Format::Hdr => 4 * pixels * 129 / 128 + 4 * lines,
+        }
+}
+
+/// Words that the sums of a pixel take: five numbers in two tiers, as whatever has more than a few samples has.
+const PART_WORDS: u64 = 10;
+
 /// Writes what `encode` makes to `path`.
-pub(super) fn write_with(path: &Path, encode: impl FnOnce(&mut Sink) -> Result<(), String>) -> Result<(), OutputError> {
+pub(super) fn write_with(
+    path: &Path,
+    room: Option<Room>,
+    encode: impl FnOnce(&mut Sink) -> Result<(), String>,
+) -> Result<(), OutputError> {
     let (_, destination) = look(path)?;
-    let written = destination.write(|sink| encode(sink).map_err(std::io::Error::other));
+    let encode = |sink: &mut Sink| encode(sink).map_err(std::io::Error::other);
+    let written = match room {
+        Some(room) => room.write(encode),
+        None => destination.write(encode),
+    };
     written.map_err(|error| unwritable(path, error.to_string()))
 }
 
@@ -161,26 +211,11 @@ fn note(image: &Image) -> String {
     format!("scene={} samples={samples}{noise} seed={} velour={version}", about.scene, about.seed)
 }
 
-fn write_png(image: &Image, writer: &mut impl Write) -> Result<(), String> {
+fn write_png(image: &Image, screen: &Screen, writer: &mut impl Write) -> Result<(), String> {
     use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
-    let color = |c: f32| (srgb(c) * 255.0 + 0.5) as u8;
-    let encode = |pixel: &[f32]| -> [u8; 4] {
-        let alpha = pixel.get(3).map_or(1.0, |a| a.clamp(0.0, 1.0));
-        // PNG keeps colour apart from alpha; the render has them multiplied.
-        let scale = if alpha > 0.0 { 1.0 / alpha } else { 0.0 };
-        [color(pixel[0] * scale), color(pixel[1] * scale), color(pixel[2] * scale), (alpha * 255.0 + 0.5) as u8]
-    };
-    let channels = image.channels;
-    let bytes: Vec<u8> =
-        image.pixels.chunks_exact(channels).flat_map(|p| encode(p).into_iter().take(channels)).collect();
-    let kind = if channels == 4 { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
+    let bytes = screen.bytes(image);
+    let kind = if image.channels == 4 { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
     PngEncoder::new(writer).write_image(&bytes, image.width, image.height, kind).map_err(|e| e.to_string())
-}
-
-/// The transfer curve of IEC 61966-2-1, clipped to [0, 1].
-pub(crate) fn srgb(linear: f32) -> f32 {
-    let x = linear.clamp(0.0, 1.0);
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * pow(x, 1.0 / 2.4) - 0.055 }
 }
 
 fn write_hdr(image: &Image, writer: &mut impl Write) -> Result<(), String> {

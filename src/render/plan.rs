@@ -6,7 +6,7 @@ use super::sky::{LEAST_SIDE, MOST_SIDE};
 use super::smooth::is_smooth;
 use crate::exec::Group;
 use crate::lang::globals::Global;
-use crate::scene::{Primitive, Scene};
+use crate::scene::{Material, Primitive, Scene};
 use std::fmt;
 
 /// Which columns of a shading point a material reads beside `I`, `N` and `Ng`, which lobes always need.
@@ -106,6 +106,15 @@ impl Plan {
     /// Can anything in the scene give light?
     pub fn gives_light(&self) -> bool {
         self.materials.iter().any(|material| material.emits)
+    }
+
+    /// The materials of surfaces and of the background whose shaders give no closure at all, so that they can only be black.
+    pub fn black<'s>(&self, scene: &'s Scene) -> impl Iterator<Item = &'s Material> {
+        let mut seen = vec![false; scene.materials.len()];
+        scene.geometry.objects.iter().for_each(|object| seen[object.material as usize] = true);
+        scene.background.iter().for_each(|background| seen[background.material as usize] = true);
+        let materials = scene.materials.iter().zip(seen);
+        materials.filter(|(m, seen)| *seen && m.surface.closures().next().is_none()).map(|(material, _)| material)
     }
 
     /// Makes the plan of `scene`.

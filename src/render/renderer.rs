@@ -3,13 +3,14 @@
 use super::accel::Accel;
 use super::displace::displaced;
 use super::error::RenderError;
-use super::film::Film;
+use super::gathered::Gathered;
 use super::image::{About, Image};
 use super::part::{Part, PartError, Whole, counts, fingerprint};
 use super::path::Dropped;
 use super::plan::Plan;
+use super::pool::Threads;
 use super::progress::Progress;
-use super::rounds::{Rounds, Task};
+use super::rounds::Task;
 use super::settings::Settings;
 use super::sky::Sky;
 use super::stop::Stop;
@@ -56,7 +57,7 @@ use std::time::Instant;
 /// ```
 pub struct Renderer {
     world: World,
-    pool: rayon::ThreadPool,
+    pool: Threads,
     /// Each thread's memory.
     waves: Vec<Mutex<Option<Wave>>>,
     gathered: Mutex<Gathered>,
@@ -65,55 +66,6 @@ pub struct Renderer {
     seconds_preparing: f64,
     /// What stands for the scene in the files of parts, once it was asked for.
     fingerprint: OnceLock<u64>,
-}
-
-/// What the threads put together.
-struct Gathered {
-    film: Film,
-    rounds: Rounds,
-    dropped: Dropped,
-    /// Camera samples that were traced here.
-    paths: u64,
-    rays: u64,
-    reports: Vec<Report>,
-    seconds_tracing: f64,
-}
-
-impl Gathered {
-    /// Nothing yet, but what was said while the world was made. The clock of a time limit runs from `start`.
-    fn new(world: &World, start: Instant) -> Self {
-        Gathered {
-            film: Film::new(&world.settings),
-            rounds: Rounds::new(&world.settings, start),
-            dropped: Dropped::default(),
-            paths: 0,
-            rays: 0,
-            reports: world.reports.clone(),
-            seconds_tracing: 0.0,
-        }
-    }
-
-    /// Takes in what a thread has found out of one tile.
-    fn keep(&mut self, settings: &Settings, task: &Task, wave: &mut Wave) {
-        self.rounds.done(task);
-        let pixels = Tile::number(settings, task.tile).pixels();
-        self.paths += u64::from(pixels) * u64::from(task.end - task.first);
-        self.dropped.merge(&std::mem::take(&mut wave.dropped));
-        self.rays += std::mem::take(&mut wave.traced);
-        self.reports.extend(wave.shading.take_reports());
-    }
-
-    /// Is there anything at all when the time is up?
-    fn check_time(&self) -> Result<(), RenderError> {
-        let nothing = self.rounds.late() && self.rounds.taken().all(|samples| samples == 0);
-        if nothing { Err(RenderError::Late) } else { Ok(()) }
-    }
-
-    /// The first report that a shader cannot be run.
-    fn check(&self) -> Result<(), RenderError> {
-        let fatal = |report: &Report| report.is_fatal().then(|| RenderError::Shader(report.to_string()));
-        self.reports.iter().find_map(fatal).map_or(Ok(()), Err)
-    }
 }
 
 impl fmt::Debug for Renderer {
@@ -128,26 +80,35 @@ impl Renderer {
         let start = Instant::now();
         settings.check().map_err(RenderError::Settings)?;
         check_camera(&scene.camera)?;
-        let pool = pool(settings)?;
+        let pool = Threads::new(settings.threads)?;
         let stop = Arc::new(Stop::new(Arc::default()));
         stop.begin(settings, start);
         let make = || {
-            let (scene, reports) = displaced(scene, settings, &stop)?;
+            let (moved, whole) = stop.whole(|| displaced(scene, settings, &stop));
+            let (scene, reports) = moved?;
+            if !whole {
+                return Err(RenderError::Late);
+            }
             let accel = Arc::new(Accel::new(&scene.geometry));
             let mut world = World::new(accel, scene, settings.clone(), None, stop.clone());
             world.reports.extend(reports.iter().cloned());
             Ok((world, reports))
         };
         let (world, said_moving) = pool.install(make)?;
-        Ok(Renderer {
+        Ok(Self::of_world(world, pool, said_moving, start))
+    }
+
+    /// Nothing is rendered yet of a world that was begun at `start`.
+    fn of_world(world: World, pool: Threads, said_moving: Vec<Report>, start: Instant) -> Self {
+        Renderer {
             waves: empty_waves(&pool),
-            gathered: Mutex::new(Gathered::new(&world, start)),
+            gathered: Mutex::new(Gathered::new(&world)),
             said_moving,
             seconds_preparing: start.elapsed().as_secs_f64(),
             fingerprint: OnceLock::new(),
             world,
             pool,
-        })
+        }
     }
 
     /// Another renderer of the scene as it is now, over the same hierarchy.
@@ -157,21 +118,13 @@ impl Renderer {
     pub fn beside(&self, settings: &Settings) -> Result<Self, RenderError> {
         let start = Instant::now();
         settings.check().map_err(RenderError::Settings)?;
-        let pool = pool(settings)?;
+        let pool = Threads::new(settings.threads)?;
         let stop = Arc::new(Stop::new(Arc::default()));
         stop.begin(settings, start);
         let (accel, scene) = (self.world.accel.clone(), self.world.scene.clone());
         let mut world = pool.install(|| World::new(accel, scene, settings.clone(), None, stop));
         world.reports.extend(self.said_moving.iter().cloned());
-        Ok(Renderer {
-            waves: empty_waves(&pool),
-            gathered: Mutex::new(Gathered::new(&world, start)),
-            said_moving: self.said_moving.clone(),
-            seconds_preparing: start.elapsed().as_secs_f64(),
-            fingerprint: OnceLock::new(),
-            world,
-            pool,
-        })
+        Ok(Self::of_world(world, pool, self.said_moving.clone(), start))
     }
 
     /// The scene as it is rendered now.
@@ -198,8 +151,13 @@ impl Renderer {
         &self.world.accel
     }
 
-    /// Ends the round that is running, and all that follow, once it is set: from another thread, or by a signal. What is unfinished
-    /// in the middle of a shader is left out.
+    /// Ends the round that is running once it is set: from another thread, or by a signal. What is unfinished in the middle of a shader
+    /// is left out.
+    ///
+    /// It stays set until whoever sets it stores `false`; no change of the scene does, or a signal that comes with a change would be lost.
+    /// Meanwhile rounds add nothing, and changes take hold, but what shaders have to say of lights and of the background for them is asked
+    /// at the next round that may go on. So the picture after a stop is the one without it, whatever was changed in between. Whoever sets it
+    /// to have changes taken stores `false` first and then looks for changes, so that one that comes meanwhile stops the next round.
     pub fn stop(&self) -> &Arc<AtomicBool> {
         self.world.stop.asked()
     }
@@ -219,6 +177,10 @@ impl Renderer {
         let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         gathered.check()?;
         gathered.check_time()?;
+        if !self.prepare()? {
+            return Ok(true);
+        }
+        let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
         let tasks = gathered.rounds.next(&self.world.settings, samples);
         let start = Instant::now();
         self.trace(&tasks, progress);
@@ -226,7 +188,34 @@ impl Renderer {
         gathered.seconds_tracing += start.elapsed().as_secs_f64();
         gathered.check()?;
         gathered.check_time()?;
-        Ok(gathered.rounds.look(&self.world.settings, &gathered.film))
+        let settings = &self.world.settings;
+        Ok(self.pool.install(|| gathered.rounds.look(settings, &gathered.film)))
+    }
+
+    /// Makes up for what a stop has kept from being prepared; false when it does so again.
+    fn prepare(&mut self) -> Result<bool, RenderError> {
+        if self.world.ready || self.world.stop.now() {
+            return Ok(self.world.ready);
+        }
+        let start = Instant::now();
+        let World { accel, scene, settings, stop, .. } = &self.world;
+        let make = || World::new(accel.clone(), scene.clone(), settings.clone(), None, stop.clone());
+        let world = self.pool.install(make);
+        self.take(world);
+        self.seconds_preparing += start.elapsed().as_secs_f64();
+        // Samples of a part that was gone on from stay.
+        let gathered = self.gathered.get_mut().map_err(|_| RenderError::ThreadFailed)?;
+        gathered.reports.clone_from(&self.world.reports);
+        gathered.check()?;
+        gathered.check_time()?;
+        Ok(self.world.ready)
+    }
+
+    /// Takes a world over the same geometry in place of the one there is.
+    fn take(&mut self, world: World) {
+        self.world = world;
+        self.world.reports.extend(self.said_moving.iter().cloned());
+        self.waves = empty_waves(&self.pool);
     }
 
     /// Renders round after round until nothing is left to do or `progress` asks to stop.
@@ -270,7 +259,7 @@ impl Renderer {
         let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
         let settings = &self.world.settings;
         let channels = if settings.alpha { 4 } else { 3 };
-        let pixels = all.film.picture(settings, 0..settings.halves(), channels);
+        let pixels = self.pool.install(|| all.film.picture(settings, 0..settings.halves(), channels));
         Image { width: settings.width, height: settings.height, channels, pixels, about: self.about_of(&all) }
     }
 
@@ -304,7 +293,8 @@ impl Renderer {
     pub fn part(&self) -> Part {
         let all = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
         let settings = &self.world.settings;
-        Part::new(self.whole(), all.rounds.held().to_vec(), all.film.sums(settings, 0..settings.halves()))
+        let sums = self.pool.install(|| all.film.sums(settings, 0..settings.halves()));
+        Part::new(self.whole(), all.rounds.held().to_vec(), sums)
     }
 
     /// Goes on from a part of this picture, whose samples take the place of all there are. Those of it that lie between
@@ -362,9 +352,8 @@ impl Renderer {
                 Ok(None) | Err(_) => *wave = Mutex::new(None),
             }
         }
-        let start = Instant::now();
-        self.world.stop.begin(&self.world.settings, start);
-        self.gathered = Mutex::new(Gathered::new(&self.world, start));
+        self.world.stop.begin(&self.world.settings, Instant::now());
+        self.gathered = Mutex::new(Gathered::new(&self.world));
     }
 
     /// Looks through another camera; the picture starts anew.
@@ -379,7 +368,7 @@ impl Renderer {
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), RenderError> {
         settings.check().map_err(RenderError::Settings)?;
         if settings.threads != self.world.settings.threads {
-            self.pool = pool(settings)?;
+            self.pool = Threads::new(settings.threads)?;
         }
         self.remake(self.world.scene.clone(), settings.clone(), None);
         Ok(())
@@ -409,8 +398,9 @@ impl Renderer {
             of_background |= scene.background.is_some_and(|background| background.material as usize == index);
         }
         // A constant is found anew at once; it is the table that is worth keeping.
+        let ready = self.world.ready;
         let sky = match &mut self.world.sky {
-            Sky::Shader { material, table } if !of_background => {
+            Sky::Shader { material, table } if ready && !of_background => {
                 Some(Sky::Shader { material: *material, table: table.take() })
             }
             Sky::Shader { .. } | Sky::Constant(_) => None,
@@ -424,12 +414,11 @@ impl Renderer {
         let start = Instant::now();
         let (accel, stop) = (self.world.accel.clone(), self.world.stop.clone());
         stop.begin(&settings, start);
-        self.world = self.pool.install(|| World::new(accel, scene, settings, sky, stop));
-        self.world.reports.extend(self.said_moving.iter().cloned());
+        let world = self.pool.install(|| World::new(accel, scene, settings, sky, stop));
+        self.take(world);
         self.seconds_preparing = start.elapsed().as_secs_f64();
         self.fingerprint = OnceLock::new();
-        self.waves = empty_waves(&self.pool);
-        self.gathered = Mutex::new(Gathered::new(&self.world, start));
+        self.gathered = Mutex::new(Gathered::new(&self.world));
     }
 }
 
@@ -442,12 +431,7 @@ fn check_camera(camera: &Camera) -> Result<(), RenderError> {
     camera.flaw().map_or(Ok(()), |flaw| Err(RenderError::Camera(flaw)))
 }
 
-fn pool(settings: &Settings) -> Result<rayon::ThreadPool, RenderError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-    pool.map_err(|e| RenderError::Threads(e.to_string()))
-}
-
-fn empty_waves(pool: &rayon::ThreadPool) -> Vec<Mutex<Option<Wave>>> {
+fn empty_waves(pool: &Threads) -> Vec<Mutex<Option<Wave>>> {
     (0..pool.current_num_threads()).map(|_| Mutex::new(None)).collect()
 }
 

@@ -14,8 +14,9 @@
 use super::film::Film;
 use super::part::Ranges;
 use super::settings::Settings;
+use super::stop::Stop;
 use super::tile::Tile;
-use std::time::Instant;
+use std::sync::Arc;
 
 /// Samples of the first round; what there is to see after fewer says little about the error.
 const FIRST: u32 = 16;
@@ -47,13 +48,13 @@ pub struct Rounds {
     pixels: Vec<f64>,
     /// Tiles in a row of the picture.
     across: usize,
-    deadline: Option<Instant>,
+    /// Whose clock says when the time is up.
+    stop: Arc<Stop>,
 }
 
 impl Rounds {
-    /// Nothing is done yet. The clock of a time limit runs from `start`.
-    pub fn new(settings: &Settings, start: Instant) -> Self {
-        let deadline = settings.deadline(start);
+    /// Nothing is done yet; `stop` has the clock of a time limit.
+    pub fn new(settings: &Settings, stop: Arc<Stop>) -> Self {
         let tiles = Tile::count(settings);
         let pixels = |number: usize| {
             let tile = Tile::number(settings, number);
@@ -65,13 +66,13 @@ impl Rounds {
             errors: vec![f64::INFINITY; tiles],
             pixels: (0..tiles).map(pixels).collect(),
             across: settings.width.div_ceil(settings.tile_size) as usize,
-            deadline,
+            stop,
         }
     }
 
     /// True when the time is up.
     pub fn late(&self) -> bool {
-        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        self.stop.late()
     }
 
     /// The tasks of the next round, of at most `most` samples a pixel; none when all is done.
@@ -220,7 +221,7 @@ mod tests {
     #[test]
     fn rounds_grow_by_a_half_and_a_third() {
         let settings = Settings { noise: Some(0.1), samples: 100, width: 16, height: 16, ..Settings::default() };
-        let mut rounds = Rounds::new(&settings, Instant::now());
+        let mut rounds = Rounds::new(&settings, Arc::new(Stop::new(Arc::default())));
         let mut ends = Vec::new();
         while rounds.held[0].count() < settings.samples {
             let task = rounds.task(&settings, 0);
@@ -234,7 +235,7 @@ mod tests {
     #[test]
     fn a_round_that_was_stopped_is_caught_up_with() {
         let settings = Settings { samples: 20, width: 64, height: 16, ..Settings::default() };
-        let mut rounds = Rounds::new(&settings, Instant::now());
+        let mut rounds = Rounds::new(&settings, Arc::new(Stop::new(Arc::default())));
         rounds.held = vec![Ranges::of(0..8), Ranges::of(0..8), Ranges::of(0..3), Ranges::of(0..20)];
         let mut ends = |most| rounds.next(&settings, most).iter().map(|t| (t.tile, t.first, t.end)).collect::<Vec<_>>();
         assert_eq!(ends(5), [(2, 3, 8)]);
@@ -245,7 +246,7 @@ mod tests {
     #[test]
     fn what_is_missing_in_between_is_made() {
         let settings = Settings { first_sample: 4, samples: 20, width: 32, height: 16, ..Settings::default() };
-        let mut rounds = Rounds::new(&settings, Instant::now());
+        let mut rounds = Rounds::new(&settings, Arc::new(Stop::new(Arc::default())));
         let mut made = Vec::new();
         rounds.resume(vec!["0..6,10..12".parse().unwrap(), "4..20".parse().unwrap()]);
         loop {
@@ -263,7 +264,7 @@ mod tests {
     #[test]
     fn a_short_time_begins_with_one_sample_of_all() {
         let settings = Settings { seconds: Some(1e6), samples: 100, width: 16, height: 16, ..Settings::default() };
-        let mut rounds = Rounds::new(&settings, Instant::now());
+        let mut rounds = Rounds::new(&settings, Arc::new(Stop::new(Arc::default())));
         let mut ends = Vec::new();
         for _ in 0..5 {
             let task = rounds.next(&settings, u32::MAX)[0];
@@ -276,7 +277,7 @@ mod tests {
     /// Four tiles in a row, with a time.
     fn four(samples: u32, taken: [u32; 4], errors: [f64; 4]) -> Vec<usize> {
         let settings = Settings { seconds: Some(1e6), samples, width: 64, height: 16, ..Settings::default() };
-        let mut rounds = Rounds::new(&settings, Instant::now());
+        let mut rounds = Rounds::new(&settings, Arc::new(Stop::new(Arc::default())));
         (rounds.held, rounds.errors) = (taken.map(|n| Ranges::of(0..n)).to_vec(), errors.to_vec());
         rounds.wanting(&settings).collect()
     }

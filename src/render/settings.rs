@@ -1,7 +1,7 @@
 //! What a user can set about a render.
 
 use super::error::SettingsError;
-use crate::limits::{BOUNCES, PIXELS, ROULETTE};
+use crate::limits::{BOUNCES, FRAME_SIDE, PIXELS, ROULETTE};
 use crate::scene::Options;
 use crate::{closure, exec};
 use std::str::FromStr;
@@ -72,6 +72,45 @@ impl Terminator {
         [("none", Terminator::None), ("factor", Terminator::Factor), ("origin", Terminator::Origin)];
 }
 
+/// How the samples around a pixel count for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Filter {
+    /// By a tent two pixels wide, whose samples count for four pixels each: the least noise, which neighbours share.
+    #[default]
+    Tent,
+    /// Those in the pixel alone, equally; the noise of no two pixels has to do with each other, as denoisers want it.
+    Box,
+    /// By a window three pixels wide (Blackman and Harris, in Harris 1978): each pixel has samples of its own, drawn by it.
+    BlackmanHarris,
+}
+
+impl Filter {
+    /// All variants with the word that selects them.
+    pub const ALL: [(&'static str, Filter); 3] =
+        [("tent", Filter::Tent), ("box", Filter::Box), ("blackman-harris", Filter::BlackmanHarris)];
+}
+
+impl FromStr for Filter {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == text);
+        let unknown = || format!("unknown filter \"{text}\"; take \"tent\", \"box\" or \"blackman-harris\"");
+        found.map(|&(_, v)| v).ok_or_else(unknown)
+    }
+}
+
+/// A frame that the picture is cut out of: its pixels are those of the frame, but for the outermost, which lack what a tent would
+/// give them from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Frame {
+    /// Width and height of the frame in pixels.
+    pub size: [u32; 2],
+    /// Where the upper left pixel of the picture is in it.
+    pub at: [u32; 2],
+}
+
 impl FromStr for Terminator {
     type Err = String;
 
@@ -111,6 +150,10 @@ pub struct Settings {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
+    /// The frame that the picture is a part of; else it is the whole.
+    pub frame: Option<Frame>,
+    /// How samples count for pixels.
+    pub filter: Filter,
     /// Samples a pixel; the most of them when `noise` or `seconds` is set.
     pub samples: u32,
     /// The number of the first sample, below `samples`: samples are numbered, and a sample of a number is the same in any render.
@@ -159,6 +202,8 @@ impl Default for Settings {
         Settings {
             width: 640,
             height: 480,
+            frame: None,
+            filter: Filter::Tent,
             samples: 1,
             first_sample: 0,
             noise: None,
@@ -205,6 +250,11 @@ impl Settings {
         self.seconds.map(|seconds| start + Duration::from_secs_f64(seconds.min(1e9)))
     }
 
+    /// The frame, or the picture as one.
+    pub fn whole_frame(&self) -> Frame {
+        self.frame.unwrap_or(Frame { size: [self.width, self.height], at: [0, 0] })
+    }
+
     /// How many halves the samples are split into.
     pub(super) fn halves(&self) -> usize {
         if self.adapts() { HALVES } else { 1 }
@@ -219,6 +269,11 @@ impl Settings {
     pub fn check(&self) -> Result<(), SettingsError> {
         if self.width == 0 || self.height == 0 || u64::from(self.width) * u64::from(self.height) > PIXELS {
             return Err(SettingsError::Size { width: self.width, height: self.height });
+        }
+        let Frame { size, at } = self.whole_frame();
+        let fits = |k: usize, side: u32| at[k].checked_add(side).is_some_and(|end| end <= size[k]);
+        if !fits(0, self.width) || !fits(1, self.height) || size[0].max(size[1]) > FRAME_SIDE {
+            return Err(SettingsError::Frame);
         }
         if self.samples <= self.first_sample {
             return Err(SettingsError::NoSamples);

@@ -13,12 +13,14 @@ pub struct Stop {
     until: AtomicU64,
     /// Set by whoever wants an end.
     asked: Arc<AtomicBool>,
+    /// Work has been left unfinished since it was last begun, whether or not somebody still asks.
+    cut: AtomicBool,
 }
 
 impl Stop {
     /// A stop for a render that begins now; `asked` may be set from anywhere.
     pub fn new(asked: Arc<AtomicBool>) -> Self {
-        Stop { begin: Instant::now(), until: AtomicU64::new(u64::MAX), asked }
+        Stop { begin: Instant::now(), until: AtomicU64::new(u64::MAX), asked, cut: AtomicBool::new(false) }
     }
 
     /// Has the time of `settings` run from `start` on.
@@ -30,11 +32,33 @@ impl Stop {
     /// Is it to end now?
     #[inline]
     pub fn now(&self) -> bool {
-        let late = || match self.until.load(Ordering::Relaxed) {
+        self.asked.load(Ordering::Relaxed) || self.late()
+    }
+
+    /// Is the time up?
+    #[inline]
+    pub fn late(&self) -> bool {
+        match self.until.load(Ordering::Relaxed) {
             u64::MAX => false,
             until => self.begin.elapsed() >= Duration::from_nanos(until),
-        };
-        self.asked.load(Ordering::Relaxed) || late()
+        }
+    }
+
+    /// [`now`](Stop::now), for work that is left where it is when the answer is yes.
+    #[inline]
+    pub fn cuts(&self) -> bool {
+        let now = self.now();
+        if now {
+            self.cut.store(true, Ordering::Relaxed);
+        }
+        now
+    }
+
+    /// Does `work`; false says that something of it was left unfinished.
+    pub fn whole<T>(&self, work: impl FnOnce() -> T) -> (T, bool) {
+        self.cut.store(false, Ordering::Relaxed);
+        let done = work();
+        (done, !self.cut.load(Ordering::Relaxed))
     }
 
     /// What is set to ask for an end.

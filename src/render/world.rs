@@ -5,10 +5,11 @@ use super::camera::RayCamera;
 use super::light::Lights;
 use super::plan::{MaterialPlan, Plan};
 use super::radiance;
-use super::settings::Settings;
+use super::settings::{Filter, Settings};
 use super::shading::Shading;
 use super::sky::Sky;
 use super::stop::Stop;
+use super::window::Window;
 use crate::exec::{Group, Host, Report};
 use crate::scene::Scene;
 use glam::Vec3;
@@ -24,6 +25,8 @@ pub struct World {
     pub plan: Plan,
     /// The camera.
     pub camera: RayCamera,
+    /// Where samples go around their pixels, when not evenly into them.
+    pub window: Option<Window>,
     /// The hierarchy, which depends on the scene's geometry alone.
     pub accel: Arc<Accel>,
     /// The lights.
@@ -38,22 +41,29 @@ pub struct World {
     pub stop: Arc<Stop>,
     /// What shaders said while lights were prepared.
     pub reports: Vec<Report>,
+    /// Lights and background are known; else `stop` came first, and nothing can be traced.
+    pub ready: bool,
 }
 
 impl World {
     /// Prepares `scene`; runs shaders where emission has to be known beforehand.
     ///
-    /// `accel` is over the scene's geometry. A `sky` that is given is taken as it is. Shaders give up when `stop` says so.
+    /// `accel` is over the scene's geometry. A `sky` that is given is taken as it is. Shaders give up when `stop` says so, which leaves a
+    /// world that is not ready.
     pub fn new(accel: Arc<Accel>, scene: Scene, settings: Settings, sky: Option<Sky>, stop: Arc<Stop>) -> Self {
         let plan = Plan::new(&scene, &settings);
         let host: Arc<dyn Host> =
             Arc::new(super::host::host(&scene.camera, &settings, &scene.textures, Some(accel.clone())).until(&stop));
         let mut shading = Shading::new(settings.closure, host.clone());
-        let object_emission = radiance::constant_emission(&scene, &plan, &mut shading);
-        let powers = radiance::light_powers(&scene, &plan, &mut shading, &object_emission);
-        let sky = sky.unwrap_or_else(|| radiance::sky(&scene, &plan, &settings, &mut shading, &host));
+        let ((object_emission, powers, sky), ready) = stop.whole(|| {
+            let constant = radiance::constant_emission(&scene, &plan, &mut shading);
+            let powers = radiance::light_powers(&scene, &plan, &mut shading, &constant);
+            let sky = sky.unwrap_or_else(|| radiance::sky(&scene, &plan, &settings, &mut shading, &host));
+            (constant, powers, sky)
+        });
         World {
-            camera: RayCamera::new(&scene.camera, settings.width, settings.height),
+            camera: RayCamera::new(&scene.camera, settings.whole_frame().size),
+            window: (settings.filter == Filter::BlackmanHarris && settings.jitter).then(Window::new),
             accel,
             stop,
             lights: Lights::new(&scene.geometry, &powers, settings.light_choice, settings.light_points),
@@ -61,6 +71,7 @@ impl World {
             sky,
             object_emission,
             reports: shading.take_reports(),
+            ready,
             plan,
             scene,
             settings,

@@ -5,15 +5,16 @@ use super::error::{Place, SceneError, SceneProblem};
 use super::extent;
 use super::flakes::Flakes;
 use super::geometry::{Geometry, Shape};
-use super::group::{Connection, GroupCompiler, GroupSpec, Hints, Layer, ParamType, ParamValue, Usage, Values};
+use super::group::{GroupCompiler, GroupSpec, Usage};
+use super::group_xml::read_group;
 use super::mesh::{Added, MaterialNames, MeshFile, add_mesh};
 use super::nearest::nearest;
 use super::placement::Placement;
 use super::scene::{Background, Material, Options, Scene};
 use super::source::within;
-use super::spec::{Statements, parse_group};
 use super::weave::Weave;
 use super::xml::Element;
+use crate::exec::Group;
 use crate::limits::{PRIMITIVES, SCENE_VALUES};
 use crate::texture::TextureFiles;
 use std::collections::HashMap;
@@ -22,7 +23,6 @@ use std::sync::Arc;
 
 const TAGS: [&str; 9] = ["Option", "Camera", "Sphere", "Quad", "Model", "Weave", "Flakes", "Background", "ShaderGroup"];
 const OPTIONS: [&str; 5] = ["max_bounces", "rr_depth", "aa", "no_jitter", "show_globals"];
-const GROUP_TAGS: [&str; 3] = ["Parameter", "Shader", "ConnectShaders"];
 
 /// The side of the background's table when the scene does not say.
 const DEFAULT_BACKGROUND_RESOLUTION: u32 = 1024;
@@ -316,70 +316,50 @@ impl<'c> Builder<'c> {
     }
 
     fn shader_group(&mut self, e: &Element) -> Result<(), SceneError> {
-        e.check_attributes(&["name", "type", "commands", "is_light"])?;
-        let name = e.node.attribute("name");
-        let usage = usage_of(e)?;
-        let is_light = matches!(e.node.attribute("is_light"), Some("1" | "on" | "yes"));
-        let Statements { mut layers, mut connections, mut pending } = group_text(e)?;
-        for child in e.children() {
-            group_child(&child, &mut layers, &mut connections, &mut pending)?;
-        }
-        if layers.is_empty() {
-            return Err(SceneError::at(e.place(), SceneProblem::EmptyGroup)
-                .with_help("write `shader NAME LAYER;` in it, or a <Shader name=\"\" layer=\"\"/>"));
-        }
-        if let Some(param) = pending.first() {
-            return Err(SceneError::at(param.place.clone(), SceneProblem::StrayParameter { name: param.name.clone() })
-                .with_help("a parameter belongs to the next shader of the group"));
-        }
-        check_connections(&layers, &connections)?;
-        self.values += layers.iter().flat_map(|layer| &layer.params).map(|param| param.values.len()).sum::<usize>();
+        let spec = read_group(e, &self.folders)?;
+        self.values +=
+            spec.layers.iter().flat_map(|layer| &layer.params).map(|param| param.values.len()).sum::<usize>();
         if self.values > SCENE_VALUES {
             return Err(SceneError::at(e.place(), SceneProblem::TooManyValues { most: SCENE_VALUES }));
         }
-        let search = self.folders.clone();
-        let spec = GroupSpec {
-            usage,
-            name: name.unwrap_or("group").into(),
-            is_light,
-            layers,
-            connections,
-            place: e.place(),
-            search,
-        };
-        let group = self.compiler.compile(&spec).map_err(|error| error.or_at(&spec.layers[0].place))?;
+        let group = self.compiler.compile(&spec).map_err(|error| match *error.problem {
+            // It may be of a value that the scene does not give.
+            SceneProblem::Group(_) => error,
+            _ => error.or_at(&spec.layers[0].place),
+        })?;
         self.scene.warnings.extend(self.compiler.take_warnings());
-        self.add_material(name, spec, group);
+        self.add_material(e.node.attribute("name"), spec, group);
         Ok(())
     }
 
     /// A second group of the same name replaces the surface or the displacement of the first.
-    fn add_material(&mut self, name: Option<&str>, spec: GroupSpec, group: crate::exec::Group) {
+    fn add_material(&mut self, name: Option<&str>, spec: GroupSpec, group: Group) {
+        let (displaces, spec) = (spec.usage == Usage::Displacement, Arc::new(spec));
         if let Some(&id) = name.and_then(|n| self.by_name.get(n)) {
             let material = &mut self.scene.materials[id as usize];
-            match spec.usage {
-                Usage::Displacement => material.displacement = Some(group),
-                Usage::Surface | Usage::Volume | Usage::Shader => {
-                    material.surface = group;
-                    self.unshaded.retain(|unshaded| *unshaded != id);
-                }
+            if displaces {
+                (material.displacement, material.displacement_spec) = (Some(group), Some(spec));
+            } else {
+                (material.surface, material.surface_spec) = (group, spec);
+                self.unshaded.retain(|unshaded| *unshaded != id);
             }
             return;
         }
-        if spec.usage == Usage::Displacement {
+        if displaces {
             self.unshaded.push(self.scene.materials.len() as u32);
         }
         if let Some(name) = name {
             self.by_name.insert(name.to_owned(), self.scene.materials.len() as u32);
         }
-        let material = Material {
-            name: spec.name,
-            displacement: (spec.usage == Usage::Displacement).then(|| group.clone()),
+        self.scene.materials.push(Material {
+            name: spec.name.clone(),
+            displacement: displaces.then(|| group.clone()),
+            displacement_spec: displaces.then(|| spec.clone()),
             surface: group,
             is_light: spec.is_light,
-            place: spec.place,
-        };
-        self.scene.materials.push(material);
+            place: spec.place.clone(),
+            surface_spec: spec,
+        });
     }
 }
 
@@ -392,109 +372,4 @@ fn resolution(e: &Element) -> Result<Option<[u32; 2]>, SceneError> {
         [width, height] if numbers.iter().all(whole) => Ok(Some([width as u32, height as u32])),
         _ => Err(e.bad_value("res", what)),
     }
-}
-
-fn usage_of(e: &Element) -> Result<Usage, SceneError> {
-    let name = e.node.attribute("type").unwrap_or("surface");
-    Usage::from_name(name).ok_or_else(|| {
-        let error = e.bad_value("type", "surface, displacement, volume or shader");
-        match nearest(name, &Usage::NAMES) {
-            Some(near) => error.with_help(format!("did you mean `{near}`?")),
-            None => error,
-        }
-    })
-}
-
-/// The statements of the `commands` attribute, or else of the element's own text.
-fn group_text(e: &Element) -> Result<Statements, SceneError> {
-    let (text, range) = match e.node.attribute_node("commands") {
-        Some(attribute) => (attribute.value(), attribute.range_value()),
-        None => match e.node.children().find(|n| n.is_text() && !n.text().unwrap_or("").trim().is_empty()) {
-            Some(node) => (node.text().unwrap_or(""), node.range()),
-            None => return Ok(Statements::default()),
-        },
-    };
-    // Entities make the text shorter than its source; then offsets do not map, and the start has to do.
-    let exact = range.len() == text.len();
-    parse_group(text, &|offset| e.place_at(range.start + if exact { offset } else { 0 }))
-}
-
-fn group_child(
-    e: &Element,
-    layers: &mut Vec<Layer>,
-    connections: &mut Vec<Connection>,
-    pending: &mut Vec<ParamValue>,
-) -> Result<(), SceneError> {
-    match e.tag() {
-        "Parameter" => {
-            pending.extend(e.attributes().map(|a| parameter_value(a.name(), a.value(), e.place_at(a.range().start))))
-        }
-        "Shader" => {
-            e.check_attributes(&["type", "name", "layer"])?;
-            let shader = e.required("name")?.to_owned();
-            let layer_name = e.required("layer")?.to_owned();
-            let params = std::mem::take(pending);
-            layers.push(Layer { shader, layer_name, params, place: e.value_place("name") });
-        }
-        "ConnectShaders" => {
-            e.check_attributes(&["srclayer", "srcparam", "dstlayer", "dstparam"])?;
-            connections.push(Connection {
-                source_layer: e.required("srclayer")?.to_owned(),
-                source_param: e.required("srcparam")?.to_owned(),
-                target_layer: e.required("dstlayer")?.to_owned(),
-                target_param: e.required("dstparam")?.to_owned(),
-                place: e.place(),
-            });
-        }
-        _ => return Err(e.unknown_tag(&GROUP_TAGS)),
-    }
-    Ok(())
-}
-
-/// `int 3`, `float .5`, `color 1 2 3` and so on; anything else is a string, as testrender reads it.
-fn parameter_value(name: &str, text: &str, place: Place) -> ParamValue {
-    let plain = |kind, values| ParamValue {
-        kind,
-        array: None,
-        name: name.to_owned(),
-        values,
-        hints: Hints::default(),
-        place: place.clone(),
-    };
-    let (word, rest) = text.split_once(' ').unwrap_or(("", text));
-    let number = rest.trim();
-    if word == "int"
-        && let Ok(value) = number.parse()
-    {
-        return plain(ParamType::Int, Values::Ints(vec![value]));
-    }
-    if let Some(kind) = ParamType::from_name(word).filter(|k| !matches!(k, ParamType::Int | ParamType::String)) {
-        let floats: Result<Vec<f32>, _> = number.split_whitespace().map(str::parse).collect();
-        if let Ok(floats) = floats
-            && floats.len() == kind.components()
-        {
-            return plain(kind, Values::Floats(floats));
-        }
-    }
-    plain(ParamType::String, Values::Strings(vec![text.to_owned()]))
-}
-
-/// A connection must join two layers of the group, the earlier to the later.
-fn check_connections(layers: &[Layer], connections: &[Connection]) -> Result<(), SceneError> {
-    let names: Vec<&str> = layers.iter().map(|l| l.layer_name.as_str()).collect();
-    for c in connections {
-        let find = |layer: &str| {
-            names.iter().position(|n| *n == layer).ok_or_else(|| {
-                let error = SceneError::at(c.place.clone(), SceneProblem::NoSuchLayer { layer: layer.to_owned() });
-                error.with_help(format!("the group's layers are: {}", names.join(", ")))
-            })
-        };
-        if find(&c.source_layer)? >= find(&c.target_layer)? {
-            let problem = SceneProblem::LayerOrder { source: c.source_layer.clone(), target: c.target_layer.clone() };
-            return Err(
-                SceneError::at(c.place.clone(), problem).with_help("values flow from earlier layers to later ones")
-            );
-        }
-    }
-    Ok(())
 }

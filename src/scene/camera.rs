@@ -12,7 +12,7 @@ pub struct Camera {
     pub direction: Vec3,
     /// Which way is up; not parallel to `direction`.
     pub up: Vec3,
-    /// The vertical field of view in degrees.
+    /// In degrees; the film is tan(fov / 2) high in all at distance 1, as in testrender, so that a picture shows about half of the angle.
     pub fov: f32,
 }
 

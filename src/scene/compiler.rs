@@ -4,12 +4,12 @@
 use super::error::{SceneError, SceneProblem};
 use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
 use super::nearest::nearest;
+use super::overrides::{Overrides, overlap};
 use super::shipped::shipped;
 use super::source::within;
 use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Recipe, Shader};
 use crate::exec::Group;
 use crate::ir::lower::Binding;
-use crate::lang::path::root;
 use crate::lang::types::{Base, Length, Type};
 use crate::limits::SHADER_BYTES;
 use std::collections::HashMap;
@@ -23,6 +23,7 @@ pub struct ShaderFiles {
     /// Include folders, macros, header and closures for all shaders.
     pub compiler: Compiler,
     lenient: bool,
+    overrides: Overrides,
     warnings: Mutex<Vec<String>>,
     memory: HashMap<String, Shader>,
     files: Mutex<HashMap<PathBuf, Shader>>,
@@ -46,6 +47,26 @@ impl ShaderFiles {
         self
     }
 
+    /// Gives parameters values that go before what scenes say, and before connections. A path is `NAME`, for all layers that have the
+    /// parameter, `LAYER.NAME` or `GROUP.LAYER.NAME`; texts are as [`GroupBuilder::text`] takes them. They take the place of those
+    /// that were given before; what was compiled stays compiled.
+    pub fn set_params(&mut self, values: Vec<(String, String)>) {
+        self.overrides = Overrides::new(values);
+    }
+
+    /// The paths of [`ShaderFiles::set_params`] that no group compiled since has, each with the path that may be meant.
+    pub fn unused_params(&self) -> Vec<(&str, Option<String>)> {
+        self.overrides.unused()
+    }
+
+    /// Do values of [`ShaderFiles::set_params`] go to this group?
+    pub fn sets(&self, spec: &GroupSpec) -> bool {
+        spec.layers.iter().any(|layer| {
+            let shader = self.shader(layer, &spec.search);
+            shader.is_ok_and(|shader| !self.overrides.of(&spec.name, &layer.layer_name, &shader).is_empty())
+        })
+    }
+
     /// Adds a shader that is not in a file; it is found before any file of its name.
     ///
     /// # Errors
@@ -58,9 +79,7 @@ impl ShaderFiles {
 
     /// Warns of a value for a parameter that is not there.
     fn warn(&self, shader: &Shader, param: &ParamValue) {
-        let variables = &shader.typed.variables;
-        let names = shader.typed.params.iter().map(|param| variables[param.var.0 as usize].name.as_str());
-        let names: Vec<&str> = names.collect();
+        let names: Vec<&str> = shader.params().collect();
         let hint = match nearest(&param.name, &names) {
             Some(near) => format!("; did you mean `{near}`?"),
             None => String::new(),
@@ -72,29 +91,40 @@ impl ShaderFiles {
     }
 
     fn shader(&self, layer: &Layer, search: &[PathBuf]) -> Result<Shader, SceneError> {
-        if let Some(shader) = self.memory.get(&layer.shader) {
-            return Ok(shader.clone());
+        let name = &layer.shader;
+        match self.named(name, search) {
+            Some(Ok(shader)) => Ok(shader),
+            Some(Err(error)) => {
+                let problem = SceneProblem::Shader { shader: name.clone(), error: Arc::new(error) };
+                Err(SceneError::at(layer.place.clone(), problem))
+            }
+            None => {
+                let problem = SceneProblem::ShaderNotFound { shader: name.clone() };
+                Err(SceneError::at(layer.place.clone(), problem).with_help(self.help_to_find(name, search)))
+            }
         }
-        let compiled = if let Some(path) = self.find(&layer.shader, search) {
-            self.once(&path, || self.compiler.compile_file(&path))
-        } else if let Some((file, text)) = shipped(&layer.shader) {
-            self.once(Path::new(file), || self.compiler.compile(file, text))
-        } else {
-            let folders: Vec<String> = search.iter().map(|folder| folder.display().to_string()).collect();
-            let problem = SceneProblem::ShaderNotFound { shader: layer.shader.clone() };
-            let code = search.iter().map(|folder| within(folder, &format!("{}.oso", layer.shader)));
-            let help = match code.into_iter().find(|path| self.compiler.options.access.is_file(path)) {
-                Some(code) => {
-                    format!("{} is code for OSL's tools; velour needs the text, `{}.osl`", code.display(), layer.shader)
-                }
-                None => format!("no `{}.osl` in {}; add folders with --path", layer.shader, folders.join(", ")),
-            };
-            return Err(SceneError::at(layer.place.clone(), problem).with_help(help));
-        };
-        compiled.map_err(|error| {
-            let problem = SceneProblem::Shader { shader: layer.shader.clone(), error: Arc::new(error) };
-            SceneError::at(layer.place.clone(), problem)
-        })
+    }
+
+    /// The shader of a name: in memory, in a file, or in the binary; `None` when there is none.
+    pub(super) fn named(&self, name: &str, search: &[PathBuf]) -> Option<Result<Shader, CompileError>> {
+        if let Some(shader) = self.memory.get(name) {
+            return Some(Ok(shader.clone()));
+        }
+        if let Some(path) = self.find(name, search) {
+            return Some(self.once(&path, || self.compiler.compile_file(&path)));
+        }
+        shipped(name).map(|(file, text)| self.once(Path::new(file), || self.compiler.compile(file, text)))
+    }
+
+    /// What helps when a shader is not found.
+    pub(super) fn help_to_find(&self, name: &str, search: &[PathBuf]) -> String {
+        let bare = name.strip_suffix(".osl").unwrap_or(name);
+        let folders: Vec<String> = search.iter().map(|folder| folder.display().to_string()).collect();
+        let code = search.iter().map(|folder| within(folder, &format!("{bare}.oso")));
+        match code.into_iter().find(|path| self.compiler.options.access.is_file(path)) {
+            Some(code) => format!("{} is code for OSL's tools; velour needs the text, `{bare}.osl`", code.display()),
+            None => format!("no `{bare}.osl` in {}; add folders with --path", folders.join(", ")),
+        }
     }
 
     /// The file of a shader, see [`find_shader`]; a folder is searched for what its files declare once.
@@ -176,12 +206,6 @@ fn declared(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// True when a shader has the parameter that a path leads into.
-fn has(shader: &Shader, path: &str) -> bool {
-    let variables = &shader.typed.variables;
-    shader.typed.params.iter().any(|param| variables[param.var.0 as usize].name == root(path))
-}
-
 impl GroupCompiler for ShaderFiles {
     fn access(&self) -> Access {
         self.compiler.options.access.clone()
@@ -204,11 +228,12 @@ impl ShaderFiles {
     /// A shader that is not found or wrong.
     pub fn builder(&self, spec: &GroupSpec) -> Result<GroupBuilder, SceneError> {
         let mut builder = GroupBuilder::new(self.compiler.closures.clone());
+        let mut given = Vec::new();
         for layer in &spec.layers {
             let shader = self.shader(layer, &spec.search)?;
             builder = builder.layer(&layer.layer_name, &shader);
             for param in &layer.params {
-                if self.lenient && !has(&shader, &param.name) {
+                if self.lenient && !shader.has(&param.name) {
                     self.warn(&shader, param);
                     continue;
                 }
@@ -222,9 +247,16 @@ impl ShaderFiles {
                     builder = builder.interpolate(&param.name, interpolated);
                 }
             }
+            for (path, text) in self.overrides.of(&spec.name, &layer.layer_name, &shader) {
+                builder = builder.text(path, text);
+                given.push((layer.layer_name.as_str(), path));
+            }
         }
         for c in &spec.connections {
-            builder = builder.connect((&c.source_layer, &c.source_param), (&c.target_layer, &c.target_param));
+            let taken = |(layer, path): &(&str, &str)| *layer == c.target_layer && overlap(path, &c.target_param);
+            if !given.iter().any(taken) {
+                builder = builder.connect((&c.source_layer, &c.source_param), (&c.target_layer, &c.target_param));
+            }
         }
         Ok(builder)
     }
@@ -242,7 +274,14 @@ impl ShaderFiles {
     /// # Errors
     /// A parameter or a connection that does not fit, at its place in the text.
     pub fn finish(&self, builder: GroupBuilder, spec: &GroupSpec) -> Result<Group, SceneError> {
-        builder.build().map_err(|error| placed(error, spec))
+        builder.build().map_err(|error| match &error.subject {
+            // It is not the scene that says so.
+            GroupSubject::Param { layer, name } if self.overrides.gives(&spec.name, layer, name) => {
+                let help = error.help.clone();
+                SceneError::nowhere(SceneProblem::Group(error)).with_help(help)
+            }
+            _ => placed(error, spec),
+        })
     }
 }
 

@@ -389,8 +389,11 @@ impl SceneError {
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(place) = &self.place {
-            write!(f, "{place}: ")?;
+        match (&self.place, &*self.problem) {
+            (Some(place), _) => write!(f, "{place}: ")?,
+            // The shader alone was asked for, and its messages have their own places.
+            (None, SceneProblem::Shader { error, .. }) => return error.fmt(f),
+            (None, _) => {}
         }
         write!(f, "error: {}", self.problem)?;
         if let Some(help) = &self.help {

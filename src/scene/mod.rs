@@ -11,12 +11,15 @@ mod extent;
 mod flakes;
 mod geometry;
 mod group;
+mod group_xml;
 mod load;
 mod mesh;
 mod nearest;
 mod obj;
+mod overrides;
 mod placement;
 mod places;
+mod preview;
 // The data of the room, which is called as the room is.
 #[allow(clippy::module_inception)]
 mod scene;
@@ -34,7 +37,8 @@ pub use group::{Connection, GroupCompiler, GroupSpec, Hints, Layer, ParamType, P
 pub use nearest::nearest;
 pub use obj::{Attribute as MeshAttribute, LineFlaw};
 pub use places::Places;
+pub use preview::PREVIEW_LAYER;
 pub use scene::{Background, Material, Options, Scene};
-pub use shipped::SHIPPED;
+pub use shipped::{SHIPPED, SHIPPED_SCENES, is_shipped_shader};
 pub use source::SceneSource;
 pub use spec::{Statements, parse_group};

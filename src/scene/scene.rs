@@ -3,6 +3,7 @@
 use super::camera::Camera;
 use super::error::Place;
 use super::geometry::Geometry;
+use super::group::GroupSpec;
 use crate::exec;
 use crate::texture::TextureFiles;
 use std::sync::Arc;
@@ -37,6 +38,10 @@ pub struct Material {
     pub is_light: bool,
     /// Where it is written.
     pub place: Place,
+    /// The surface group as it is written, for a host that compiles it again.
+    pub surface_spec: Arc<GroupSpec>,
+    /// The displacement group as it is written.
+    pub displacement_spec: Option<Arc<GroupSpec>>,
 }
 
 /// What rays see that hit nothing.

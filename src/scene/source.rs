@@ -1,6 +1,7 @@
 //! Where a scene's text comes from, and where the files that it names are looked for.
 
 use super::error::{SceneError, SceneProblem};
+use super::shipped::shipped_scene;
 use crate::limits::SCENE_BYTES;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,7 +19,8 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
-    /// Reads an argument: a file's name, or the XML itself when it begins with `<`.
+    /// Reads an argument: a file's name, that of a scene in the binary when there is no such file, or the XML itself when it begins with
+    /// `<`.
     ///
     /// # Errors
     /// It cannot be read, or may not be.
@@ -30,6 +32,9 @@ impl SceneSource {
         let unreadable = |error: std::io::Error| {
             SceneError::nowhere(SceneProblem::Unreadable { scene: argument.to_owned(), error: Arc::new(error) })
         };
+        if let Some((file, text)) = shipped_scene(argument).filter(|_| !path.exists()) {
+            return Ok(SceneSource { name: file.into(), text, folder: ".".into() });
+        }
         let bytes = access.read(path, SCENE_BYTES).map_err(|error| unreadable(error.into()))?;
         let no_text = |_| unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text"));
         let text = String::from_utf8(bytes).map_err(no_text)?;

@@ -11,8 +11,8 @@ use source::{Source, Token, sources};
 
 /// The rooms from the ground up; a room uses itself and the ones before it.
 const ROOMS: &[&str] = &[
-    "limits", "files", "lang", "math", "ops", "check", "ir", "optimize", "bsdf", "closure", "exec", "compile", "scene",
-    "render", "measure", "live", "cli",
+    "limits", "files", "lang", "math", "ops", "check", "ir", "optimize", "bsdf", "closure", "exec", "compile", "query",
+    "lsp", "scene", "render", "measure", "live", "cli",
 ];
 
 /// Arrows that the order does not have and that are meant: who, and which file of a later room it uses.

@@ -1,7 +1,7 @@
 //! The kinds of input, and who reads them.
 
 use std::path::Path;
-use velour::compile::Compiler;
+use velour::compile::{Compiler, Recipe};
 use velour::exec::{Machine, Points};
 use velour::render::part;
 use velour::render::{Renderer, Settings, Silent};
@@ -37,6 +37,9 @@ pub const MATERIALS: Kind =
 pub const PART: Kind = Kind { name: "part", few: 400, extensions: &[], own: parts, words: PART_WORDS, read: read_part };
 pub const TEXTURE: Kind =
     Kind { name: "texture", few: 800, extensions: &[], own: textures, words: PART_WORDS, read: read_texture };
+
+pub const RECIPE: Kind =
+    Kind { name: "recipe", few: 5000, extensions: &["oso"], own: recipes, words: RECIPE_WORDS, read: read_recipe };
 
 fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
     texts.iter().map(|text| text.as_bytes().to_vec()).collect()
@@ -143,8 +146,12 @@ fn points() -> Points {
     points
 }
 
+thread_local! {
+    static COMPILER: Compiler = Compiler::new();
+}
+
 fn read_shader(bytes: &[u8], _folder: &Path) {
-    let checked = Compiler::new().check_closely("input.osl", bytes);
+    let checked = COMPILER.with(|compiler| compiler.check_closely("input.osl", bytes));
     let _ = checked.diagnostics.list.len();
     let Some(shader) = checked.shader else { return };
     let Ok(group) = shader.group().build() else { return };
@@ -344,11 +351,44 @@ fn parts() -> Vec<Vec<u8>> {
     [(3, 2), (20, 5)].map(one).to_vec()
 }
 
-fn read_part(bytes: &[u8], folder: &Path) {
-    let path = folder.join("p.exr");
-    std::fs::write(&path, bytes).unwrap();
-    if let Ok(part) = part::read(&path) {
+fn read_part(bytes: &[u8], _folder: &Path) {
+    if let Ok(part) = part::read_bytes(bytes) {
         let _ = (part.picture(), part.summary(), part.clone().merge(part));
+    }
+}
+
+const RECIPE_WORDS: &[&str] = &[
+    "velour 1: how a shader is compiled, no code; OSL's tools cannot read it\n",
+    "source ",
+    "name ",
+    "header ",
+    "include ",
+    "define A 1\n",
+    "undefine A\n",
+    "\r\n",
+    "\u{0}",
+    "\u{e9}",
+    "  ",
+    "/",
+    "..",
+];
+
+fn recipes() -> Vec<Vec<u8>> {
+    let recipe = Recipe {
+        source: "/a/b c.osl".into(),
+        name: "b c.osl".into(),
+        header: Some("std.h".into()),
+        include_dirs: vec!["/x".into(), "y z".into()],
+        defines: vec![("A".into(), "1".into()), ("B".into(), String::new())],
+        undefines: vec!["C".into()],
+    };
+    vec![recipe.text().unwrap().into_bytes()]
+}
+
+fn read_recipe(bytes: &[u8], _folder: &Path) {
+    if let Some(recipe) = Recipe::read(&String::from_utf8_lossy(bytes)) {
+        // What was read is written as what reads as the same.
+        assert!(recipe.text().is_none_or(|text| Recipe::read(&text) == Some(recipe)));
     }
 }
 

@@ -122,6 +122,11 @@ fn textures() {
 }
 
 #[test]
+fn recipes() {
+    try_kind(&kinds::RECIPE);
+}
+
+#[test]
 fn a_panic_and_a_long_time_are_found() {
     let panics = |_: &[u8], _: &Path| panic!("as it must");
     let kind = Kind { read: panics, ..kinds::SHADER };

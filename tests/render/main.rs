@@ -9,6 +9,7 @@ mod displace;
 mod emitters;
 mod exact;
 mod files;
+mod filters;
 mod furnace;
 mod glass;
 mod lights;

@@ -129,7 +129,7 @@ fn a_render_that_stops_by_noise_goes_on_as_one_that_does_it_in_one_go() {
 /// The group of the last material of a scene whose shader is `shader`.
 fn group(shader: &str) -> Group {
     let xml = format!(r#"<World><ShaderGroup>{shader}</ShaderGroup><Sphere center="0,0,0" radius="1"/></World>"#);
-    scene(&xml).materials[0].surface.clone()
+    scene_with(&xml, &LOOPS).materials[0].surface.clone()
 }
 
 #[test]
@@ -256,4 +256,66 @@ fn what_a_shader_prints_is_told_again_after_a_restart() {
         renderer.restart();
         assert_eq!(renderer.picture().about.reports.len(), 0);
     }
+}
+
+/// A lamp and a sky of which nothing is known until their shaders have run, loops and all.
+const LOOPS: [&str; 2] = [
+    "surface lamp(float power = 9) { float x = u; for (int i = 0; i < 9; i++) x = .5 * (x + noise(P * i)); Ci = power * x * emission(); }",
+    "surface heaven(float bright = 1)
+     { float x = 0; for (int i = 0; i < 2; i++) x += pow(max(I[1], 0.0), 9 * i); Ci = bright * x * background(); }",
+];
+
+#[test]
+fn what_changes_after_a_stop_is_prepared_when_it_goes_on() {
+    let scene =
+        scene_with(&ROOM.replace("shader sun", "shader heaven").replace("shader emitter", "shader lamp"), &LOOPS);
+    type Change<'a> = &'a dyn Fn(&mut Renderer);
+    let lamp: Change =
+        &|r| r.set_material(r.material("lamp").unwrap(), group("float power 20; shader lamp l1;")).unwrap();
+    let sky: Change =
+        &|r| r.set_material(r.material("sky").unwrap(), group("float bright 3; shader heaven l1;")).unwrap();
+    let look: Change = &|r| r.set_camera(Camera { fov: 50.0, ..scene.camera }).unwrap();
+    let set: Change = &|r| r.set_settings(&Settings { seed: 3, ..settings(4) }).unwrap();
+    let restart: Change = &|r| r.restart();
+    let stop = |renderer: &Renderer, on: bool| renderer.stop().store(on, Ordering::Relaxed);
+    let all = [
+        ("lamp", lamp, lamp),
+        ("lamp and camera", lamp, look),
+        ("sky and lamp", sky, lamp),
+        ("settings", set, restart),
+    ];
+    for (name, first, second) in all {
+        let [mut free, mut stopped] = [(); 2].map(|()| renderer(&scene, &settings(4)));
+        [first, second].iter().for_each(|change| change(&mut free));
+        stop(&stopped, true);
+        [first, second].iter().for_each(|change| change(&mut stopped));
+        assert!(stopped.round(&Silent).unwrap(), "{name}: something is left");
+        assert_eq!(finished(&mut stopped).about.taken, [0, 0], "{name}");
+        stop(&stopped, false);
+        let picture = finished(&mut stopped);
+        assert!(bits(&picture) == bits(&finished(&mut free)), "{name}");
+        assert_eq!(picture.about.taken, [4, 4]);
+    }
+}
+
+#[test]
+fn a_part_that_is_gone_on_from_while_stopped_is_kept() {
+    let scene = scene_with(&ROOM.replace("shader emitter", "shader lamp"), &LOOPS);
+    let whole = finished(&mut renderer(&scene, &settings(6)));
+    let mut first = renderer(&scene, &settings(6));
+    first.round_of(2, &Silent).unwrap();
+    let mut second = renderer(&scene, &settings(6));
+    second.stop().store(true, Ordering::Relaxed);
+    second.set_camera(scene.camera).unwrap();
+    second.resume(first.part()).unwrap();
+    second.stop().store(false, Ordering::Relaxed);
+    assert!(bits(&finished(&mut second)) == bits(&whole));
+}
+
+#[test]
+fn a_time_that_is_up_while_surfaces_are_moved_leaves_no_renderer() {
+    let slow = "displacement slow() { float x = u; for (int i = 0; i < 3000; i++) x = pow(x + noise(P * i), .99); P += x * N; }";
+    let xml = ROOM.replace("name=\"floor\">shader matte l1;", "name=\"floor\">shader matte l1;</ShaderGroup><ShaderGroup name=\"floor\" type=\"displacement\">shader slow l1;");
+    let times = Settings { seconds: Some(1e-3), ..settings(1) };
+    assert!(matches!(Renderer::new(&scene_with(&xml, &[slow]), &times), Err(RenderError::Late)));
 }

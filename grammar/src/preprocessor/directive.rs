@@ -150,7 +150,7 @@ impl Preprocessor<'_> {
             && let Some(input) = self.inputs.last()
         {
             let name = self.table.files[input.file as usize].name.clone();
-            self.once.insert(super::include::key(&name));
+            self.once.insert(super::include::key(&*name));
         }
     }
 

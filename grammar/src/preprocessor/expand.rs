@@ -114,14 +114,14 @@ impl Preprocessor<'_> {
             _ => (Kind::Number, (file.line(place.start) + 1).to_string()),
         };
         self.spend(1 + text.len() / 8, Some(place));
-        let call = self.call(token);
+        let call = self.call(token, None);
         PpToken { kind, place: self.table.invent(&text), call, ..token }
     }
 
     /// Notes a call of a macro.
-    fn call(&mut self, name: PpToken) -> u32 {
+    fn call(&mut self, name: PpToken, defined: Option<Place>) -> u32 {
         let text = self.text(name).into();
-        self.table.calls.push(MacroCall { name: text, place: name.place, parent: name.call });
+        self.table.calls.push(MacroCall { name: text, place: name.place, parent: name.call, defined });
         self.table.calls.len() as u32 - 1
     }
 
@@ -204,7 +204,7 @@ impl Preprocessor<'_> {
 
     /// Puts the replacement of a call where tokens are pulled from, and switches the macro off.
     fn replace(&mut self, name: PpToken, called: &Rc<Macro>, mut arguments: Vec<Argument>) {
-        let call = self.call(name);
+        let call = self.call(name, called.place);
         let mut tokens = self.substitute(called, &mut arguments, call);
         if let Some(first) = tokens.first_mut() {
             first.space = name.space;

@@ -111,6 +111,9 @@ impl Preprocessor<'_> {
         let beside = here.iter().chain(main.iter().filter(|main| here.as_ref() != Some(*main)));
         for folder in beside.chain(&self.options.include_dirs) {
             let path = folder.join(wanted);
+            if let Some(text) = self.buffer(&path) {
+                return Found::Text(path.display().to_string(), text.to_string());
+            }
             match self.options.access.read(&path, FILE_BYTES) {
                 Ok(bytes) => {
                     let name = path.display().to_string();
@@ -129,6 +132,16 @@ impl Preprocessor<'_> {
             Some((name, text)) => Found::Text(name.clone(), text.clone()),
             None => Found::Nothing(looked),
         }
+    }
+
+    /// The text that an editor has in place of a file.
+    fn buffer(&self, path: &Path) -> Option<Arc<str>> {
+        let buffers = &self.options.buffers;
+        if buffers.is_empty() || !self.options.access.covers(path) {
+            return None;
+        }
+        let path = key(path);
+        buffers.iter().find(|(buffer, _)| *buffer == path).map(|(_, text)| text.clone())
     }
 
     /// The folder of the first file that is not the prelude.
@@ -181,6 +194,6 @@ fn shown(folder: &Path) -> String {
 }
 
 /// What makes a file the same one for `#pragma once`.
-pub(super) fn key(name: &str) -> PathBuf {
-    std::fs::canonicalize(name).unwrap_or_else(|_| PathBuf::from(name))
+pub(super) fn key(name: impl AsRef<Path>) -> PathBuf {
+    std::fs::canonicalize(&name).unwrap_or_else(|_| name.as_ref().to_owned())
 }

@@ -1,7 +1,7 @@
 //! Outputs of a grid as image files: EXR, TIFF, PNG and HDR, of any number of channels where the format has them.
 
 use crate::files::{Destination, Sink};
-use crate::render::output::srgb;
+use crate::render::srgb;
 use exr::prelude as exr;
 use image::{ExtendedColorType, ImageEncoder};
 use std::io::Write;

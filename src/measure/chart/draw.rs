@@ -93,11 +93,16 @@ fn text_of(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
+/// Makes the embedded font the one that `plotters` calls "sans-serif".
+pub fn register_fonts() -> Drawn {
+    register_font("sans-serif", FontStyle::Normal, notosans::REGULAR_TTF)
+        .and_then(|()| register_font("sans-serif", FontStyle::Bold, notosans::BOLD_TTF))
+        .map_err(|_| "the embedded font cannot be read".to_owned())
+}
+
 impl<B: DrawingBackend> Sheet<B> {
     fn new(root: DrawingArea<B, Shift>, scale: f64) -> Result<Self, String> {
-        register_font("sans-serif", FontStyle::Normal, notosans::REGULAR_TTF)
-            .and_then(|()| register_font("sans-serif", FontStyle::Bold, notosans::BOLD_TTF))
-            .map_err(|_| "the embedded font cannot be read".to_owned())?;
+        register_fonts()?;
         root.fill(&WHITE).map_err(text_of)?;
         Ok(Sheet { root, scale })
     }

@@ -1,17 +1,21 @@
-//! The file of a part: an EXR of two parts, of which the first is the picture, and the second has the sums as pairs of 32-bit
+//! The file of a part: an EXR of two parts, of which the first is the picture, and the second has the sums as 32-bit
 //! integers and says in its comments what they are.
 
 use super::super::error::OutputError;
-use super::super::exact::{self, PARTS, Sums, Tier};
+use super::super::exact::{self, PARTS};
 use super::super::image::Image;
 use super::super::output;
+use super::columns::{Column, checked, columns, sums};
 use super::error::PartError;
 use super::ranges::Ranges;
 use super::samples::{Part, Whole};
+use crate::files::Room;
 use crate::limits::{PART_CHANNELS, PART_PACKED, PIXELS};
 use ::exr::meta::header::Header;
 use exr::prelude as exr;
 use std::fmt::Write as _;
+use std::io::{Read, Seek};
+use std::panic::AssertUnwindSafe;
 use std::path::Path;
 
 /// The first line of the comments; a later one of another form has another number.
@@ -23,13 +27,24 @@ const LAYER: &str = "velour sums";
 /// The words of a sum in the names of channels.
 const WORDS: [&str; PARTS] = ["red", "green", "blue", "alpha", "weight"];
 
+/// Those of the words of a number: its last 32 bits, and those before.
+const PLACES: [&str; 2] = ["low", "high"];
+
 /// Writes the picture with its sums: an EXR that any viewer opens.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write(part: &Part, path: &Path) -> Result<(), OutputError> {
+    write_into(part, path, None)
+}
+
+/// The same, into room that is held for it.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_into(part: &Part, path: &Path, room: Option<Room>) -> Result<(), OutputError> {
     let image = part.picture();
-    output::write_with(path, |sink| encode(part, &image, sink))
+    output::write_with(path, room, |sink| encode(part, &image, sink))
 }
 
 fn encode(part: &Part, image: &Image, sink: &mut (impl std::io::Write + std::io::Seek)) -> Result<(), String> {
@@ -41,38 +56,22 @@ fn encode(part: &Part, image: &Image, sink: &mut (impl std::io::Write + std::io:
     });
     let picture = output::layer_attributes(image, "picture");
     let picture = exr::Layer::new(size, picture, output::ENCODING, exr::AnyChannels::sort(channels.collect()));
-    let tiers = part.sums().clone().settled();
-    let channels = tiers.iter().flat_map(|tier| (0..PARTS).flat_map(move |k| words(tier, k)));
+    let columns = columns(part.sums());
     let attributes = exr::LayerAttributes {
-        comments: Some(output::text(&description(part, checked(&tiers)))),
+        comments: Some(output::text(&description(part, checked(&columns)))),
         ..exr::LayerAttributes::named(LAYER)
     };
-    let sums = exr::Layer::new(size, attributes, output::ENCODING, exr::AnyChannels::sort(channels.collect()));
+    let channels: Vec<_> = columns.into_iter().map(channel).collect();
+    let sums = exr::Layer::new(size, attributes, output::ENCODING, exr::AnyChannels::sort(channels.into()));
     let window = exr::ImageAttributes::with_size(size);
     exr::Image::empty(window).with_layer(picture).with_layer(sums).write().to_buffered(sink).map_err(|e| e.to_string())
 }
 
-/// The two channels of one number of a tier's sums; nothing where all are zero, but for the weights, without which nothing is known.
-fn words(tier: &Tier, k: usize) -> Vec<exr::AnyChannel<exr::FlatSamples>> {
-    let weights = tier.number == 0 && k == PARTS - 1;
-    if !weights && tier.sums.iter().all(|sum| sum[k] == 0) {
-        return Vec::new();
-    }
-    let channel = |word: &str, shift: u32| {
-        let samples = tier.sums.iter().map(|sum| (sum[k] as u64 >> shift) as u32).collect();
-        let name = format!("tier{}.{}.{word}", tier.number, WORDS[k]);
-        exr::AnyChannel::new(name.as_str(), exr::FlatSamples::U32(samples))
-    };
-    vec![channel("high", 32), channel("low", 0)]
-}
-
-/// A number that changes when a bit of the sums does.
-fn checked(tiers: &[Tier]) -> u64 {
-    let bytes = |tier: &Tier| {
-        let numbers = tier.sums.iter().flatten().flat_map(|sum| sum.to_le_bytes());
-        tier.number.to_le_bytes().into_iter().chain(numbers).collect::<Vec<u8>>()
-    };
-    tiers.iter().fold(0, |sum, tier| sum.rotate_left(1) ^ farmhash::fingerprint64(&bytes(tier)))
+/// The channel of a column.
+fn channel(column: Column) -> exr::AnyChannel<exr::FlatSamples> {
+    let (tier, part, high) = column.of;
+    let name = format!("tier{tier}.{}.{}", WORDS[part], PLACES[usize::from(high)]);
+    exr::AnyChannel::new(name.as_str(), exr::FlatSamples::U32(column.words))
 }
 
 /// What the sums are, a line each. Tiles are told in runs: `240x0..64` for 240 tiles of the same samples.
@@ -93,27 +92,56 @@ fn description(part: &Part, sums: u64) -> String {
 /// # Errors
 /// The file cannot be read, or is no part.
 pub fn read(path: &Path) -> Result<Part, PartError> {
-    // The decoder is others' code: whatever a broken file makes it do ends here.
     let fail = |reason: String| PartError::Unreadable { path: path.to_owned(), reason };
-    let given_up = || Err("its decoder has given up".to_owned());
-    std::panic::catch_unwind(|| bounded(path)).unwrap_or_else(|_| given_up()).map_err(fail)?;
-    let image =
-        std::panic::catch_unwind(|| layers(path)).unwrap_or_else(|_| Err("its decoder has given up".to_owned()));
-    assemble(&image.map_err(fail)?).map_err(fail)
+    // Before it is opened, for a pipe would wait for ever.
+    let found = std::fs::metadata(path).map_err(|error| fail(error.to_string()))?;
+    if !found.is_file() {
+        return Err(fail("it is no regular file".to_owned()));
+    }
+    let file = std::fs::File::open(path).map_err(|error| fail(error.to_string()))?;
+    of_file(&file, found.len()).map_err(fail)
+}
+
+/// Reads a part that an open file has, of which messages say `path`.
+///
+/// # Errors
+/// It is no part.
+pub fn read_file(file: &std::fs::File, path: &Path) -> Result<Part, PartError> {
+    let fail = |reason: String| PartError::Unreadable { path: path.to_owned(), reason };
+    let found = file.metadata().map_err(|error| fail(error.to_string()))?;
+    of_file(file, found.len()).map_err(fail)
+}
+
+/// Reads a part whose file is in memory.
+///
+/// # Errors
+/// It is no part, for this reason.
+pub fn read_bytes(bytes: &[u8]) -> Result<Part, String> {
+    decoded(&|| Ok(std::io::Cursor::new(bytes)), bytes.len() as u64)
+}
+
+fn of_file(file: &std::fs::File, size: u64) -> Result<Part, String> {
+    let again = || {
+        let mut file = file;
+        file.rewind().map(|()| std::io::BufReader::new(file)).map_err(|error| error.to_string())
+    };
+    decoded(&again, size)
+}
+
+/// The part in a file of so many bytes, which `begin` reads from its start.
+fn decoded<R: Read + Seek>(begin: &dyn Fn() -> Result<R, String>, size: u64) -> Result<Part, String> {
+    // The decoder is others' code: whatever a broken file makes it do ends here.
+    let decode = || bounded(begin()?, size).and_then(|()| layers(begin()?, size));
+    let given_up = |_| Err("its decoder has given up".to_owned());
+    assemble(std::panic::catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(given_up)?)
 }
 
 /// Refuses what claims to be larger than any part is, before memory is taken for it.
-fn bounded(path: &Path) -> Result<(), String> {
-    // Before it is opened, for a pipe would wait for ever.
-    let found = std::fs::metadata(path).map_err(|error| error.to_string())?;
-    if !found.is_file() {
-        return Err("it is no regular file".to_owned());
-    }
-    let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
-    let headers = exr::MetaData::read_from_unbuffered(file, false).map_err(|error| error.to_string())?.headers;
+fn bounded(file: impl Read + Seek, bytes: u64) -> Result<(), String> {
+    let headers = exr::MetaData::read_from_buffered(file, false).map_err(|error| error.to_string())?.headers;
     let size = |header: &Header| header.layer_size.0.saturating_mul(header.layer_size.1);
     let numbers = |header: &Header| size(header).saturating_mul(header.channels.list.len()) as u64;
-    let room = found.len().saturating_mul(PART_PACKED) / 4;
+    let room = bytes.saturating_mul(PART_PACKED) / 4;
     let large = |header: &Header| {
         size(header) as u64 > PIXELS || header.channels.list.len() > PART_CHANNELS || numbers(header) > room
     };
@@ -123,53 +151,45 @@ fn bounded(path: &Path) -> Result<(), String> {
 /// What the decoder makes of the file.
 type Layers = exr::Image<exr::Layers<exr::AnyChannels<exr::FlatSamples>>>;
 
-fn layers(path: &Path) -> Result<Layers, String> {
+fn layers(file: impl Read + Seek, bytes: u64) -> Result<Layers, String> {
     use exr::{ReadChannels, ReadLayers};
     let reader = exr::read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
-    reader.from_file(path).map_err(|error| error.to_string())
+    // What is small is read before its threads would have begun.
+    let reader = if bytes < 1 << 18 { reader.non_parallel() } else { reader };
+    reader.from_buffered(file).map_err(|error| error.to_string())
 }
 
-fn assemble(image: &Layers) -> Result<Part, String> {
-    let named = |layer: &&exr::Layer<exr::AnyChannels<exr::FlatSamples>>| {
+fn assemble(image: Layers) -> Result<Part, String> {
+    let named = |layer: &exr::Layer<exr::AnyChannels<exr::FlatSamples>>| {
         layer.attributes.layer_name.as_ref().is_some_and(|name| name.eq(LAYER))
     };
     let none = "it has no sums; a render leaves them with --samples, or when it is stopped";
-    let layer = image.layer_data.iter().find(named).ok_or(none)?;
+    let layer = image.layer_data.into_iter().find(named).ok_or(none)?;
     let text = layer.attributes.comments.as_ref().map(ToString::to_string).unwrap_or_default();
     let (of, held, sums) = understand(&text, layer.size).ok_or("it does not say what its sums are")?;
-    let mut tiers: Vec<Tier> = Vec::new();
-    for channel in &layer.channel_data.list {
+    let mut columns = Vec::new();
+    for channel in layer.channel_data.list {
         let name = channel.name.to_string();
-        let (number, k, shift) = placed(&name).ok_or_else(|| format!("it has an unknown channel `{name}`"))?;
-        let exr::FlatSamples::U32(samples) = &channel.sample_data else {
-            return Err(format!("its channel `{name}` has no integers"));
-        };
-        let at = tiers.iter().position(|tier| tier.number == number).unwrap_or_else(|| {
-            tiers.push(Tier { number, sums: vec![[0; PARTS]; samples.len()] });
-            tiers.len() - 1
-        });
-        let sums = tiers[at].sums.iter_mut();
-        sums.zip(samples).for_each(|(sum, word)| sum[k] |= ((u64::from(*word)) << shift) as i64);
+        let of = placed(&name).ok_or_else(|| format!("it has an unknown channel `{name}`"))?;
+        match channel.sample_data {
+            exr::FlatSamples::U32(words) => columns.push(Column { of, words }),
+            _ => return Err(format!("its channel `{name}` has no integers")),
+        }
     }
-    tiers.sort_unstable_by_key(|tier| tier.number);
-    if checked(&tiers) != sums {
+    columns.sort_by_key(|column| column.of);
+    if checked(&columns) != sums {
         return Err("it is damaged: its sums are not those that were written".to_owned());
     }
-    let sums = Sums::of(tiers).ok_or("its sums are incomplete")?;
+    let sums = self::sums(&columns, layer.size.area()).ok_or("its sums are incomplete")?;
     Ok(Part::new(of, held, sums))
 }
 
-/// The tier, the number in it and the place of its word that a channel is for.
-fn placed(name: &str) -> Option<(i32, usize, u32)> {
+/// What the channel of a name is a column of.
+fn placed(name: &str) -> Option<(i32, usize, bool)> {
     let mut names = name.strip_prefix("tier")?.split('.');
-    let (number, part, word) = (names.next()?.parse().ok()?, names.next()?, names.next()?);
-    let shift = match word {
-        "high" => 32,
-        "low" => 0,
-        _ => return None,
-    };
-    exact::is_tier(number).then_some(())?;
-    Some((number, WORDS.iter().position(|word| *word == part)?, shift))
+    let (number, part, place) = (names.next()?.parse().ok()?, names.next()?, names.next()?);
+    let place = PLACES.iter().position(|known| *known == place)?;
+    exact::is_tier(number).then_some((number, WORDS.iter().position(|word| *word == part)?, place == 1))
 }
 
 /// What a description of sums of this size says: of which picture, the samples of each tile, and what the sums were when written.

@@ -13,13 +13,15 @@ use std::io::Read;
 /// the same but for chance (2^-64).
 ///
 /// It covers geometry, materials, camera, background, the files of textures and dictionaries that shaders name in their text, and the
-/// settings that change a sample. It does not cover names that shaders put together while they run, but for the tiles of `<UDIM>`.
+/// settings that change a sample. It does not cover the content of files whose names shaders put together while they run, but for the tiles of
+/// `<UDIM>`: whoever changes such a texture between two parts merges samples of two pictures unnoticed.
 /// How many samples there are, threads, and the sizes of batches and tiles do not change a sample.
 pub fn fingerprint(scene: &Scene, settings: &Settings) -> u64 {
     let mut digest = Digest::default();
     let _ = write!(digest, "{:?} {:?}", scene.camera, scene.background);
     let Settings { width, height, seed, max_bounces, rr_depth, jitter, alpha, .. } = *settings;
     let _ = write!(digest, "{:?}", (width, height, seed, max_bounces, rr_depth, jitter, alpha));
+    let _ = write!(digest, "{:?}", (settings.frame, settings.filter));
     let Settings { lights, light_choice, light_points, terminator, show_globals, closure, .. } = *settings;
     let _ = write!(digest, "{:?}", (lights, light_choice, light_points, terminator, show_globals, closure));
     for material in &scene.materials {

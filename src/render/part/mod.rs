@@ -7,6 +7,7 @@
 //! nothing of tiles. A part of which tiles have unlike samples, left by a render that was stopped, is then a plain weighted mean at
 //! their borders until the tiles have caught up.
 
+mod columns;
 mod error;
 mod file;
 mod identity;
@@ -14,7 +15,7 @@ mod ranges;
 mod samples;
 
 pub use error::PartError;
-pub use file::{read, write};
+pub use file::{read, read_bytes, read_file, write, write_into};
 pub use identity::fingerprint;
 pub use ranges::{Ranges, counts};
 pub use samples::{Part, Whole};

@@ -1,7 +1,7 @@
 //! The samples of a part, and what they are samples of.
 
 use super::super::exact::Sums;
-use super::super::film::means;
+use super::super::film::picture_of;
 use super::super::image::{About, Image};
 use super::super::tile::Tile;
 use super::error::PartError;
@@ -144,7 +144,7 @@ impl Part {
         let taken = self.counts();
         let about =
             About { scene: self.of.scene.clone(), samples: taken[1], taken, seed: self.of.seed, ..About::default() };
-        let pixels = (0..self.sums.len()).flat_map(|i| means(self.sums.value(i), channels)).collect();
+        let pixels = picture_of(&self.sums, channels);
         Image { width, height, channels, pixels, about }
     }
 }

@@ -12,6 +12,8 @@ use std::ops::Range;
 /// Starts a path for each of `samples` of the pixel at (`x`, `y`).
 pub fn start(world: &World, wave: &mut Wave, x: u32, y: u32, samples: Range<u32>) {
     let settings = &world.settings;
+    let at = settings.whole_frame().at;
+    let (x, y) = (x + at[0], y + at[1]);
     let seed = random::pixel_seed(settings.seed, x, y);
     let lanes = &mut wave.camera;
     lanes.draws.resize(samples.len());
@@ -23,6 +25,9 @@ pub fn start(world: &World, wave: &mut Wave, x: u32, y: u32, samples: Range<u32>
     match settings.jitter {
         true => lanes.draws.draw(random::CAMERA, 2),
         false => lanes.draws.numbers.iter_mut().for_each(|column| column.fill(0.5)),
+    }
+    if let Some(window) = &world.window {
+        lanes.draws.numbers.iter_mut().take(2).flatten().for_each(|x| *x = window.place(*x));
     }
     let [across, down] = [0, 1].map(|k| lanes.draws.numbers[k].as_slice());
     directions(&world.camera, x as f32, y as f32, [across, down], &mut lanes.directions);

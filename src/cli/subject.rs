@@ -1,0 +1,60 @@
+//! What a command renders: a scene, or a shader in the built-in scene, with values for parameters that go before its own.
+
+use super::failure::Failure;
+use crate::scene::{PREVIEW_LAYER, Scene, ShaderFiles, is_shipped_shader};
+use std::path::{Path, PathBuf};
+
+/// A scene or a shader, as an argument names it.
+pub struct Subject<'a> {
+    /// The argument: a file's name, a name of what is in the binary, or the text of a scene.
+    pub argument: &'a str,
+    /// Folders to look for shaders and meshes in, after that of the file.
+    pub search: &'a [PathBuf],
+}
+
+impl Subject<'_> {
+    /// Is it a shader, which the built-in scene shows?
+    pub fn is_shader(&self) -> bool {
+        let path = Path::new(self.argument);
+        match path.extension() {
+            _ if self.argument.trim_start().starts_with('<') => false,
+            Some(extension) => extension == "osl" || extension == "oso",
+            None => is_shipped_shader(self.argument) && !path.exists(),
+        }
+    }
+
+    /// The path of a parameter that is called so on the command line.
+    pub fn param(&self, name: &str) -> String {
+        let own = self.is_shader() && name.strip_prefix(PREVIEW_LAYER).is_none_or(|rest| !rest.starts_with('.'));
+        // The built-in scene has shaders of its own, whose parameters are not meant.
+        if own { format!("{PREVIEW_LAYER}.{name}") } else { name.to_owned() }
+    }
+
+    /// Loads it, by the parameters that `shaders` has been given, all of which must be there.
+    pub fn load(&self, shaders: &ShaderFiles) -> Result<Scene, Failure> {
+        let scene = match self.is_shader() {
+            true => Scene::of_shader(Path::new(self.argument), self.search, shaders),
+            false => Scene::load(self.argument, self.search, shaders),
+        };
+        let scene = scene.map_err(Failure::of_scene)?;
+        match shaders.unused_params().first() {
+            None => Ok(scene),
+            Some((path, near)) => Err(self.no_param(path, near.as_deref())),
+        }
+    }
+
+    fn no_param(&self, path: &str, near: Option<&str>) -> Failure {
+        let strip = |path: &str| {
+            let own = path.strip_prefix(PREVIEW_LAYER).and_then(|rest| rest.strip_prefix('.'));
+            own.filter(|_| self.is_shader()).unwrap_or(path).to_owned()
+        };
+        let what = if self.is_shader() { "the shader" } else { "no shader of the scene" };
+        let has = if self.is_shader() { "has no parameter" } else { "has a parameter" };
+        let help = match near {
+            Some(near) => format!("did you mean `{}`?", strip(near)),
+            None if self.is_shader() => "`velour info FILE.osl` lists its parameters".to_owned(),
+            None => "a parameter is called NAME, LAYER.NAME or GROUP.LAYER.NAME".to_owned(),
+        };
+        Failure::Usage(format!("error: {what} {has} `{}`\n  help: {help}", strip(path)))
+    }
+}
