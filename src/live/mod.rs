@@ -33,7 +33,7 @@ mod watch;
 
 pub use source::Source;
 
-use crate::render::Settings;
+use crate::render::{Screen, Settings};
 use board::Board;
 use inbox::{Inbox, Wish};
 use server::Desk;
@@ -99,14 +99,14 @@ impl fmt::Debug for Live {
 
 impl Live {
     /// Begins to render `source`, and serves its page on 127.0.0.1 alone. Without a port it takes [`PORT`], or any if that is taken. A
-    /// `resolution`, width and height, goes before what the scene states.
+    /// `resolution`, width and height, goes before what the scene states; the picture is shown by `screen` until the page says otherwise.
     ///
     /// # Errors
     /// The port is taken, or files cannot be watched. What is wrong with the source is shown on the page.
     pub fn start(
         source: Source,
         settings: &Settings,
-        resolution: Option<[u32; 2]>,
+        (resolution, screen): (Option<[u32; 2]>, Screen),
         port: Option<u16>,
     ) -> Result<Live, LiveError> {
         settings.check().map_err(LiveError::Settings)?;
@@ -115,7 +115,8 @@ impl Live {
         let server = Arc::new(bound(port)?);
         let nowhere = || LiveError::Port { port: port.unwrap_or(PORT), reason: "it has no address".to_owned() };
         let address = server.server_addr().to_ip().ok_or_else(nowhere)?;
-        let session = Session::new(source, settings.clone(), resolution, (inbox.clone(), board.clone(), watched));
+        let session =
+            Session::new(source, settings.clone(), (resolution, screen), (inbox.clone(), board.clone(), watched));
         std::thread::spawn(move || session.run());
         let desk = Desk { board: board.clone(), inbox: inbox.clone(), port: address.port() };
         let served = server.clone();

@@ -13,7 +13,7 @@ use super::values::Given;
 use super::watch::Watched;
 use crate::exec::Report;
 use crate::limits::{PRINTED, PRINTED_BYTES};
-use crate::render::{Image, Progress, RenderError, Settings};
+use crate::render::{Image, Progress, RenderError, Screen, Settings, View};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -58,7 +58,7 @@ pub struct Session {
     subject: Option<Subject>,
     stages: Option<Stages>,
     overrides: Overrides,
-    exposure: f32,
+    screen: Screen,
     image: Option<Image>,
     work: Work,
     /// Groups whose text or values have changed and that do not compile yet.
@@ -90,11 +90,12 @@ impl Progress for Interrupt<'_> {
 }
 
 impl Session {
-    /// A session that has loaded nothing yet. `resolution` goes before what the scene states.
+    /// A session that has loaded nothing yet. `resolution` goes before what the scene states; `screen` is how
+    /// it is shown until the page says otherwise.
     pub fn new(
         source: Source,
         settings: Settings,
-        resolution: Option<[u32; 2]>,
+        (resolution, screen): (Option<[u32; 2]>, Screen),
         (inbox, board, watched): (Arc<Inbox>, Arc<Board>, Watched),
     ) -> Self {
         Session {
@@ -108,7 +109,7 @@ impl Session {
             subject: None,
             stages: None,
             overrides: Overrides::new(),
-            exposure: 0.0,
+            screen,
             image: None,
             work: Work::None,
             dirty: BTreeSet::new(),
@@ -122,8 +123,15 @@ impl Session {
         }
     }
 
+    /// Says how the picture is shown, with its bytes where they are others now.
+    fn put_screen(&self, frame: Option<Frame>) {
+        let view = View::ALL.iter().find(|(_, view)| *view == self.screen.view).map(|(name, _)| *name);
+        self.board.publish([("screen", json!({"stops": self.screen.exposure, "view": view}))], frame);
+    }
+
     /// Runs until it is asked to close.
     pub fn run(mut self) {
+        self.put_screen(None);
         loop {
             let (wishes, since) = self.inbox.take();
             if !self.see_to(wishes, since) {
@@ -147,15 +155,15 @@ impl Session {
             match wish {
                 Wish::Close => return false,
                 Wish::Changed(path) => drop(changed.insert(path)),
-                Wish::Set(knob, given) => self.set(knob, given),
+                Wish::Set(knob, given) => self.set(&knob, given),
                 Wish::Reset => {
                     self.dirty.extend(self.overrides.keys().map(|knob| knob.group));
                     self.overrides.clear();
                 }
-                Wish::Exposure(stops) => {
-                    self.exposure = stops;
-                    let frame = self.image.as_ref().map(|image| Frame::of(image, stops));
-                    self.board.publish([("exposure", json!(stops))], frame);
+                Wish::Screen(screen) => {
+                    self.screen = screen;
+                    let frame = self.image.as_ref().map(|image| Frame::of(image, screen));
+                    self.put_screen(frame);
                 }
                 Wish::Verify(group) => {
                     if let Some(subject) = &self.subject {
@@ -178,18 +186,19 @@ impl Session {
     }
 
     /// Gives a parameter a value, if it is there and the value fits.
-    fn set(&mut self, knob: Knob, given: Option<Given>) {
-        let fits = |given: &Given| self.subject.as_ref().is_some_and(|subject| subject.fits(&knob, given));
-        match given {
-            Some(given) if fits(&given) => {
-                self.dirty.insert(knob.group);
-                self.overrides.insert(knob, given);
-            }
-            Some(_) => {}
-            None => {
-                if self.overrides.remove(&knob).is_some() {
-                    self.dirty.insert(knob.group);
+    fn set(&mut self, knob: &Knob, given: Option<Given>) {
+        let Some(subject) = &self.subject else { return };
+        for knob in subject.alike(knob) {
+            let changed = match &given {
+                Some(given) if subject.fits(&knob, given) => {
+                    self.overrides.insert(knob.clone(), given.clone());
+                    true
                 }
+                Some(_) => false,
+                None => self.overrides.remove(&knob).is_some(),
+            };
+            if changed {
+                self.dirty.insert(knob.group);
             }
         }
     }
@@ -270,7 +279,9 @@ impl Session {
 
     fn compile(&mut self) -> Result<(), String> {
         let Some(subject) = &mut self.subject else { return Ok(()) };
-        let renewed = subject.compile(&self.source, &self.dirty, &mut self.overrides)?;
+        let Some(renewed) = subject.compile(&self.source, &self.dirty, &mut self.overrides)? else {
+            return self.load();
+        };
         let groups = subject.take(&self.source, renewed);
         self.dirty.clear();
         self.stages.iter_mut().for_each(|stages| stages.change(groups.clone()));
@@ -363,7 +374,7 @@ impl Session {
             self.waited = Some(since.elapsed().as_secs_f64() * 1e3);
         }
         self.shown = Instant::now();
-        let frame = Frame::of(&image, self.exposure);
+        let frame = Frame::of(&image, self.screen);
         let size = self.stages.as_ref().map_or([image.width, image.height], Stages::size);
         let about = &image.about;
         let picture = json!({

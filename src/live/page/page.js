@@ -42,7 +42,7 @@ function take(news, bytes) {
   if (news.status) drawStatus();
   if (news.picture || news.status) drawFigures();
   if (news.verify) drawVerify();
-  if (news.exposure !== undefined && document.activeElement !== by("exposure")) showStops(news.exposure);
+  if (news.screen && document.activeElement !== by("exposure")) showScreen(news.screen);
   if ((news.picture && !news.picture.coarse && looked !== news.picture.change) || news.status?.state === "wrong") lookAgain();
 }
 
@@ -209,7 +209,9 @@ function drawControls() {
   const { groups, first } = known.controls;
   const menu = by("group");
   if (group === null || group >= groups.length) group = first;
-  menu.replaceChildren(...groups.map((entry, k) => Object.assign(document.createElement("option"), { value: k, textContent: entry.name })));
+  group = groups[group].as ?? group;
+  const option = (entry, k) => (entry.as === null ? [Object.assign(document.createElement("option"), { value: k, textContent: entry.name })] : []);
+  menu.replaceChildren(...groups.flatMap(option));
   menu.value = group;
   if (groups[group]) controls.draw(by("controls"), groups[group], group);
   const text = controls.written(groups);
@@ -230,11 +232,17 @@ function showStops(stops) {
   by("exposure").value = stops;
   by("stops").textContent = `${stops > 0 ? "+" : ""}${Number(stops).toFixed(1)} EV`;
 }
-by("exposure").oninput = (event) => {
-  showStops(event.target.value);
-  controls.send("/exposure", { stops: Number(event.target.value) });
-};
-by("exposure").ondblclick = () => { showStops(0); controls.send("/exposure", { stops: 0 }); };
+function showScreen(screen) {
+  showStops(screen.stops);
+  by("screen").value = screen.view;
+}
+function sendScreen() {
+  showStops(by("exposure").value);
+  controls.send("/screen", { stops: Number(by("exposure").value), view: by("screen").value });
+}
+by("exposure").oninput = sendScreen;
+by("exposure").ondblclick = () => { by("exposure").value = 0; sendScreen(); };
+by("screen").onchange = sendScreen;
 
 // ---- verify
 
