@@ -125,7 +125,7 @@ def shader(context, folder):
     step("a box, a menu and a well are seen")
 
     picture = page.locator("#picture").bounding_box()
-    page.mouse.move(picture["x"] + 0.5 * picture["width"], picture["y"] + 0.45 * picture["height"])
+    page.mouse.move(picture["x"] + 0.3 * picture["width"], picture["y"] + 0.55 * picture["height"])
     expect(page.locator("#tree")).to_contain_text("sheen (", timeout=10000)
     expect(page.locator("#lobes")).to_contain_text("diffuse")
     expect(page.locator("#where")).to_contain_text("silk")

@@ -245,7 +245,11 @@ impl Session {
                 self.trouble = None;
                 self.begin();
             }
-            Err(text) => self.fail(text),
+            Err(text) => {
+                // What mends it may be a file that nobody has asked for yet.
+                self.watched.any(true);
+                self.fail(text);
+            }
         }
         self.follow();
     }
@@ -310,7 +314,6 @@ impl Session {
     fn fail(&mut self, text: String) {
         self.work = Work::None;
         self.trouble = Some(text);
-        self.watched.any(true);
         self.since = None;
         self.put_all("wrong");
     }
