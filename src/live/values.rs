@@ -38,13 +38,10 @@ impl Given {
         let kind = kind(ty)?;
         let values = match self {
             Given::Text(text) if kind == ParamType::String => Values::Strings(vec![text.clone()]),
-            Given::Numbers(numbers) if kind == ParamType::Int && numbers.len() == 1 => {
-                Values::Ints(vec![numbers[0] as i32])
-            }
-            Given::Numbers(numbers) if kind != ParamType::String && numbers.len() == kind.components() => {
-                Values::Floats(numbers.iter().map(|&x| x as f32).collect())
-            }
-            Given::Text(_) | Given::Numbers(_) => return None,
+            Given::Text(_) => return None,
+            Given::Numbers(numbers) if kind == ParamType::String || numbers.len() != kind.components() => return None,
+            Given::Numbers(numbers) if kind == ParamType::Int => Values::Ints(vec![numbers[0] as i32]),
+            Given::Numbers(numbers) => Values::Floats(numbers.iter().map(|&x| x as f32).collect()),
         };
         let (name, place, hints) = (name.to_owned(), layer.place.clone(), Hints::default());
         Some(ParamValue { kind, array: None, name, values, hints, place })
