@@ -152,7 +152,8 @@ thread_local! {
 }
 
 fn read_shader(bytes: &[u8], _folder: &Path) {
-    let checked = COMPILERS.with(|both| both[usize::from(bytes.len() % 8 != 0)].check_closely("input.osl", bytes));
+    let checked =
+        COMPILERS.with(|both| both[usize::from(!bytes.len().is_multiple_of(8))].check_closely("input.osl", bytes));
     let _ = checked.diagnostics.list.len();
     let Some(shader) = checked.shader else { return };
     let Ok(group) = shader.group().build() else { return };
