@@ -410,13 +410,15 @@ impl Session {
             }
             notes.push(note);
         }
+        // A group that another one stands for is not counted twice.
+        let shown = |knob: &&Knob| self.subject.iter().all(|subject| subject.stands_for(knob.group) == knob.group);
         json!({
             "state": state,
             "change": self.change,
             "file": self.source.argument.chars().take(300).collect::<String>(),
             "trouble": self.trouble,
             "notes": notes,
-            "set": self.overrides.len(),
+            "set": self.overrides.keys().filter(shown).count(),
         })
     }
 
