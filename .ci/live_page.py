@@ -1,5 +1,6 @@
 """Drives the page of `velour live`: a picture, an edit, a slider, a pixel, verify, an error. Called by .ci/live."""
 
+import atexit
 import pathlib
 import re
 import shutil
@@ -39,6 +40,8 @@ class Page:
 
     def __init__(self, context, folder, file):
         self.process = subprocess.Popen([velour, "live", file, "--port", "0"], cwd=folder, stdout=subprocess.PIPE, text=True)
+        # It ends with this script, however that ends.
+        atexit.register(self.process.kill)
         self.address = re.match(r"http://127\.0\.0\.1:\d+/", self.process.stdout.readline())[0]
         self.page = context.new_page()
         self.said = []
@@ -50,6 +53,9 @@ class Page:
 
     def change(self):
         return int(self.page.locator("#picture").get_attribute("data-change") or 0)
+
+    def samples(self):
+        return int(self.page.locator("#picture").get_attribute("data-samples") or 0)
 
     def mean(self):
         """The mean color of the picture."""
@@ -63,7 +69,14 @@ class Page:
         """Does something, and waits for the picture that comes of it."""
         before = self.change()
         act()
-        self.page.wait_for_function(f"Number(document.getElementById('picture').dataset.change) > {before}", timeout=20000)
+        self.until("another picture", lambda: self.change() > before)
+
+    def until(self, what, right):
+        """Waits in the way that the page's policy allows: the script's own waiting would evaluate text in it."""
+        deadline = time.monotonic() + 20
+        while not right():
+            assert time.monotonic() < deadline, what
+            self.page.wait_for_timeout(30)
 
     def shot(self, name):
         self.page.screenshot(path=f"{shots}/{name}.png")
@@ -75,8 +88,8 @@ class Page:
         assert status == 130 and time.monotonic() - start < 1, (status, time.monotonic() - start)
         others = [url for url in self.asked if not url.startswith(self.address)]
         assert not others, others
-        # That velour has gone is all there may be to complain about.
-        wrong = [text for text in self.said if not re.search(r"ERR_(CONNECTION|INCOMPLETE|EMPTY)", text)]
+        # That velour has gone is all there may be to complain about, and how this script reads pixels.
+        wrong = [text for text in self.said if not re.search(r"ERR_(CONNECTION|INCOMPLETE|EMPTY)|willReadFrequently", text)]
         assert not wrong, wrong
         self.page.close()
 
@@ -85,7 +98,7 @@ def shader(context, folder):
     (folder / "silk.osl").write_text(SHADER)
     live = Page(context, folder, "silk.osl")
     page = live.page
-    page.wait_for_function("document.getElementById('picture').dataset.samples >= 1", timeout=20000)
+    live.until("a picture", lambda: live.samples() >= 1)
     step("a picture")
     expect(page.locator("#controls .label").first).to_have_text("base")
     expect(page.locator("#controls")).to_contain_text("width of the sheen")
@@ -112,7 +125,7 @@ def shader(context, folder):
     step("a box, a menu and a well are seen")
 
     picture = page.locator("#picture").bounding_box()
-    page.mouse.move(picture["x"] + 0.5 * picture["width"], picture["y"] + 0.45 * picture["height"])
+    page.mouse.move(picture["x"] + 0.3 * picture["width"], picture["y"] + 0.55 * picture["height"])
     expect(page.locator("#tree")).to_contain_text("sheen (", timeout=10000)
     expect(page.locator("#lobes")).to_contain_text("diffuse")
     expect(page.locator("#where")).to_contain_text("silk")
@@ -130,7 +143,7 @@ def shader(context, folder):
     page.locator("#tab-pixel").click()
     (folder / "silk.osl").write_text(SHADER.replace("sheen(Ci, N,", "sheen(Ci, M,"))
     expect(page.locator("#trouble")).to_contain_text("^", timeout=10000)
-    expect(page.locator("#trouble")).to_contain_text("silk.osl:14:")
+    expect(page.locator("#trouble")).to_contain_text("silk.osl:13:")
     expect(page.locator("#stale")).to_be_visible()
     live.shot("error")
     step("a mistake with its place")
@@ -144,7 +157,7 @@ def scene(context, folder):
     shutil.copytree(root / "shaders", folder / "shaders")
     live = Page(context, folder, "shaders/scenes/figure1.xml")
     page = live.page
-    page.wait_for_function("document.getElementById('picture').dataset.samples >= 4", timeout=20000)
+    live.until("some samples", lambda: live.samples() >= 4)
     picture = page.locator("#picture").bounding_box()
     page.mouse.click(picture["x"] + 0.5 * picture["width"], picture["y"] + 0.5 * picture["height"])
     expect(page.locator("#group option:checked")).to_have_text("cloth 3", timeout=10000)

@@ -47,7 +47,7 @@ impl Page {
 
     fn of(folder: tempfile::TempDir, file: &str) -> Page {
         let mut command = Command::new(env!("CARGO_BIN_EXE_velour"));
-        command.args(["live", file, "--port", "0", "--spp", "64"]).current_dir(folder.path());
+        command.args(["live", file, "--port", "0", "--spp", "64", "--view", "srgb"]).current_dir(folder.path());
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();
         BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
@@ -242,7 +242,7 @@ fn values_of_parameters_change_the_picture() {
     page.until("white", |page| page.corner() == [255; 3]);
     page.wish("/reset", &json!({}));
     page.until("the color of the text again", |page| page.corner() == [0, 255, 137]);
-    page.wish("/exposure", &json!({"stops": -2}));
+    page.wish("/screen", &json!({"stops": -2, "view": "srgb"}));
     page.until("two stops less", |page| page.corner() == [0, 137, 71]);
     // What fits nothing changes nothing.
     for value in [json!([1, 2]), json!(["red"]), json!([null]), json!(7), json!([])] {
@@ -250,7 +250,7 @@ fn values_of_parameters_change_the_picture() {
         assert!(status == 200 || status == 400, "{value}");
     }
     page.wish("/set", &json!({"group": 99, "layer": 0, "name": "c", "value": [1, 1, 1]}));
-    page.wish("/exposure", &json!({"stops": 0}));
+    page.wish("/screen", &json!({"stops": 0, "view": "srgb"}));
     page.until("the same color", |page| page.corner() == [0, 255, 137]);
 }
 

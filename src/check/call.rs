@@ -32,9 +32,9 @@ impl Checker<'_> {
         }
         // Wrong arguments leave it open which one is meant.
         if self.notes.is_some()
-            && let Some(candidate) = self.candidates(&name.name).first()
+            && let Some(meaning) = self.nearest_meaning(&name.name)
         {
-            self.note(name.span, &name.name, candidate.meaning(), false);
+            self.note(name.span, &name.name, meaning, false);
         }
         let list = |arg: &ast::Expr| matches!(arg.kind, ast::ExprKind::InitList(_));
         let values: Vec<Expr> =

@@ -28,6 +28,14 @@ impl Candidate {
 }
 
 impl Checker<'_> {
+    /// What a call of this name means when nothing is known of its arguments.
+    pub(super) fn nearest_meaning(&self, name: &str) -> Option<Meaning> {
+        let function = self.functions_named(name).first().map(|id| Meaning::Function(*id));
+        let builtin = || builtins::static_name(name).map(Meaning::Builtin);
+        let closure = || self.closures.named(name).next().map(|(id, _)| Meaning::Closure(id));
+        function.or_else(builtin).or_else(closure)
+    }
+
     /// What a call of this name may mean. A function hides builtins and outer functions of the same parameters; inside
     /// its own body it stands back for them, so that it can build on what it replaces.
     pub(super) fn candidates(&self, name: &str) -> Vec<Candidate> {

@@ -6,7 +6,7 @@ use super::keep::Signals;
 use super::speak::say;
 use super::threads::capped;
 use crate::live::{Live, Source};
-use crate::render::Settings;
+use crate::render::{Screen, Settings, View};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -30,6 +30,9 @@ pub struct LiveArgs {
     /// Sample each tile until its error (root mean square, in units of radiance) is below N
     #[arg(long, default_value_t = 0.002, value_name = "N")]
     noise: f32,
+    /// How light becomes the colors of a screen, until the page says otherwise: soft, srgb, agx or linear
+    #[arg(long, default_value = "soft")]
+    view: View,
     /// Threads; 0 for one a core, and at most four for each
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
@@ -67,7 +70,8 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
         ..defaults
     };
     let signals = Signals::listen(&Arc::new(AtomicBool::new(false)))?;
-    let live = Live::start(source, &settings, resolution, args.port)
+    let screen = Screen { view: args.view, ..Screen::default() };
+    let live = Live::start(source, &settings, (resolution, screen), args.port)
         .map_err(|error| Failure::Usage(format!("error: {error}")))?;
     say(&format!("http://{}/ shows {}; Ctrl-C ends it\n", live.address(), args.file));
     loop {

@@ -1,7 +1,7 @@
 //! What a command renders: a scene, or a shader in the built-in scene, with values for parameters that go before its own.
 
 use super::failure::Failure;
-use crate::scene::{PREVIEW_LAYER, Scene, ShaderFiles, is_shipped_shader};
+use crate::scene::{PREVIEW_LAYER, Scene, ShaderFiles, names_shader};
 use std::path::{Path, PathBuf};
 
 /// A scene or a shader, as an argument names it.
@@ -15,12 +15,7 @@ pub struct Subject<'a> {
 impl Subject<'_> {
     /// Is it a shader, which the built-in scene shows?
     pub fn is_shader(&self) -> bool {
-        let path = Path::new(self.argument);
-        match path.extension() {
-            _ if self.argument.trim_start().starts_with('<') => false,
-            Some(extension) => extension == "osl" || extension == "oso",
-            None => is_shipped_shader(self.argument) && !path.exists(),
-        }
+        names_shader(self.argument)
     }
 
     /// The path of a parameter that is called so on the command line.

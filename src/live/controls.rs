@@ -42,19 +42,24 @@ pub fn controls(subject: &Subject, overrides: &Overrides) -> Value {
                 json!({"name": layer.layer_name, "shader": shader.name(), "params": params})
             })
             .collect();
-        json!({"name": label(subject, number), "material": part.material, "layers": layers})
+        let first = Some(subject.stands_for(number)).filter(|first| *first != number);
+        json!({"name": label(subject, number), "as": first, "layers": layers})
     });
     json!({"first": subject.first, "groups": groups.collect::<Vec<_>>()})
 }
 
 /// What people call a group: its name, or its last shader's, with a number where several are called so.
 pub fn label(subject: &Subject, number: usize) -> String {
-    let name = |part: &Part| match part.spec.name.as_str() {
-        "group" | "subject" => part.shaders.last().map_or(String::new(), |shader| shader.name().to_owned()),
-        own => own.to_owned(),
+    let number = subject.stands_for(number);
+    let name = |k: usize| {
+        let part = &subject.parts[k];
+        let shown = subject.own_layer(k).or(part.shaders.len().checked_sub(1));
+        let shader = || shown.map_or(String::new(), |layer| part.shaders[layer].name().to_owned());
+        let unnamed = part.spec.name == "group" || subject.own_layer(k).is_some();
+        if unnamed { shader() } else { part.spec.name.clone() }
     };
-    let own = name(&subject.parts[number]);
-    let same = |end: usize| subject.parts[..end].iter().filter(|part| name(part) == own).count();
+    let own = name(number);
+    let same = |end: usize| (0..end).filter(|&k| subject.stands_for(k) == k && name(k) == own).count();
     if same(subject.parts.len()) > 1 { format!("{own} {}", same(number) + 1) } else { own }
 }
 

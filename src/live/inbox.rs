@@ -1,6 +1,7 @@
 //! What the session is asked for: by the page, and by files that change.
 
 use super::values::Given;
+use crate::render::Screen;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,8 +29,8 @@ pub enum Wish {
     Set(Knob, Option<Given>),
     /// All parameters are again what their texts say.
     Reset,
-    /// The picture is shown so many stops brighter.
-    Exposure(f32),
+    /// The picture is shown in another way.
+    Screen(Screen),
     /// The shader of a group is verified.
     Verify(usize),
     /// A pixel of the whole picture is looked at.
@@ -45,7 +46,7 @@ impl Wish {
     fn ends_round(&self) -> bool {
         match self {
             Wish::Changed(_) | Wish::Set(..) | Wish::Reset | Wish::Close => true,
-            Wish::Exposure(_) | Wish::Verify(_) | Wish::Look(..) | Wish::Watch => false,
+            Wish::Screen(_) | Wish::Verify(_) | Wish::Look(..) | Wish::Watch => false,
         }
     }
 }
@@ -85,7 +86,7 @@ impl Inbox {
         let known = |other: &&mut Wish| match (&wish, &**other) {
             (Wish::Set(a, _), Wish::Set(b, _)) => a == b,
             (Wish::Changed(a), Wish::Changed(b)) => a == b,
-            (Wish::Exposure(_), Wish::Exposure(_)) | (Wish::Watch, Wish::Watch) => true,
+            (Wish::Screen(_), Wish::Screen(_)) | (Wish::Watch, Wish::Watch) => true,
             _ => false,
         };
         let room = state.wishes.len() < MOST;

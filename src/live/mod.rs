@@ -33,13 +33,13 @@ mod watch;
 
 pub use source::Source;
 
-use crate::render::Settings;
+use crate::render::{Screen, Settings};
 use board::Board;
 use inbox::{Inbox, Wish};
 use server::Desk;
 use session::Session;
 use std::fmt;
-use std::net::{Ipv4Addr, SocketAddr};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use tiny_http::Server;
 use watch::Watched;
@@ -99,14 +99,14 @@ impl fmt::Debug for Live {
 
 impl Live {
     /// Begins to render `source`, and serves its page on 127.0.0.1 alone. Without a port it takes [`PORT`], or any if that is taken. A
-    /// `resolution`, width and height, goes before what the scene states.
+    /// `resolution`, width and height, goes before what the scene states; the picture is shown by `screen` until the page says otherwise.
     ///
     /// # Errors
     /// The port is taken, or files cannot be watched. What is wrong with the source is shown on the page.
     pub fn start(
         source: Source,
         settings: &Settings,
-        resolution: Option<[u32; 2]>,
+        (resolution, screen): (Option<[u32; 2]>, Screen),
         port: Option<u16>,
     ) -> Result<Live, LiveError> {
         settings.check().map_err(LiveError::Settings)?;
@@ -115,7 +115,8 @@ impl Live {
         let server = Arc::new(bound(port)?);
         let nowhere = || LiveError::Port { port: port.unwrap_or(PORT), reason: "it has no address".to_owned() };
         let address = server.server_addr().to_ip().ok_or_else(nowhere)?;
-        let session = Session::new(source, settings.clone(), resolution, (inbox.clone(), board.clone(), watched));
+        let session =
+            Session::new(source, settings.clone(), (resolution, screen), (inbox.clone(), board.clone(), watched));
         std::thread::spawn(move || session.run());
         let desk = Desk { board: board.clone(), inbox: inbox.clone(), port: address.port() };
         let served = server.clone();
@@ -139,10 +140,21 @@ impl Drop for Live {
 
 fn bound(port: Option<u16>) -> Result<Server, LiveError> {
     let at = |port: u16| {
-        Server::http((Ipv4Addr::LOCALHOST, port)).map_err(|error| LiveError::Port { port, reason: error.to_string() })
+        let told = |reason: String| LiveError::Port { port, reason };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| told(error.to_string()))?;
+        send_at_once(&listener);
+        Server::from_listener(listener, None).map_err(|error| told(error.to_string()))
     };
     match port {
         Some(port) => at(port),
         None => at(PORT).or_else(|_| at(0)),
     }
+}
+
+/// Has connections send what is written without waiting for more: they take it over from what listens on Linux. Else the end of each
+/// picture waits 40 ms for the receipt of its beginning.
+fn send_at_once(listener: &TcpListener) {
+    #[cfg(target_os = "linux")]
+    let _ = rustix::net::sockopt::set_tcp_nodelay(listener, true);
+    let _ = listener;
 }

@@ -7,7 +7,7 @@
 //! | `GET /pixel?x=X&y=Y` | what a pixel of the whole picture is made of |
 //! | `POST /set` | `{"group", "layer", "name", "value"}`: a list of numbers, of one text, or null for what the text says |
 //! | `POST /reset` | all parameters are what their texts say |
-//! | `POST /exposure` | `{"stops"}` |
+//! | `POST /screen` | `{"stops", "view"}`: exposure, and `soft`, `srgb`, `agx` or `linear` |
 //! | `POST /verify` | `{"group"}` |
 
 use super::board::Board;
@@ -15,6 +15,7 @@ use super::guard::{Claims, refused};
 use super::inbox::{Inbox, Knob, Wish};
 use super::page::{FILES, HEADERS};
 use super::values::Given;
+use crate::render::Screen;
 use serde_json::{Value, json};
 use std::io::Read;
 use std::sync::Arc;
@@ -179,9 +180,10 @@ fn wish(path: &str, value: &Value) -> Option<Wish> {
             }
         }
         "/reset" => Some(Wish::Reset),
-        "/exposure" => {
+        "/screen" => {
             let stops = value.get("stops")?.as_f64().filter(|stops| stops.abs() <= 20.0)?;
-            Some(Wish::Exposure(stops as f32))
+            let view = value.get("view")?.as_str()?.parse().ok()?;
+            Some(Wish::Screen(Screen { exposure: stops as f32, view }))
         }
         "/verify" => number("group").map(Wish::Verify),
         _ => None,

@@ -13,7 +13,7 @@ use super::values::Given;
 use super::watch::Watched;
 use crate::exec::Report;
 use crate::limits::{PRINTED, PRINTED_BYTES};
-use crate::render::{Image, Progress, RenderError, Settings};
+use crate::render::{Image, Progress, RenderError, Screen, Settings, View};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -58,7 +58,7 @@ pub struct Session {
     subject: Option<Subject>,
     stages: Option<Stages>,
     overrides: Overrides,
-    exposure: f32,
+    screen: Screen,
     image: Option<Image>,
     work: Work,
     /// Groups whose text or values have changed and that do not compile yet.
@@ -90,11 +90,12 @@ impl Progress for Interrupt<'_> {
 }
 
 impl Session {
-    /// A session that has loaded nothing yet. `resolution` goes before what the scene states.
+    /// A session that has loaded nothing yet. `resolution` goes before what the scene states; `screen` is how
+    /// it is shown until the page says otherwise.
     pub fn new(
         source: Source,
         settings: Settings,
-        resolution: Option<[u32; 2]>,
+        (resolution, screen): (Option<[u32; 2]>, Screen),
         (inbox, board, watched): (Arc<Inbox>, Arc<Board>, Watched),
     ) -> Self {
         Session {
@@ -108,7 +109,7 @@ impl Session {
             subject: None,
             stages: None,
             overrides: Overrides::new(),
-            exposure: 0.0,
+            screen,
             image: None,
             work: Work::None,
             dirty: BTreeSet::new(),
@@ -122,8 +123,15 @@ impl Session {
         }
     }
 
+    /// Says how the picture is shown, with its bytes where they are others now.
+    fn put_screen(&self, frame: Option<Frame>) {
+        let view = View::ALL.iter().find(|(_, view)| *view == self.screen.view).map(|(name, _)| *name);
+        self.board.publish([("screen", json!({"stops": self.screen.exposure, "view": view}))], frame);
+    }
+
     /// Runs until it is asked to close.
     pub fn run(mut self) {
+        self.put_screen(None);
         loop {
             let (wishes, since) = self.inbox.take();
             if !self.see_to(wishes, since) {
@@ -147,15 +155,15 @@ impl Session {
             match wish {
                 Wish::Close => return false,
                 Wish::Changed(path) => drop(changed.insert(path)),
-                Wish::Set(knob, given) => self.set(knob, given),
+                Wish::Set(knob, given) => self.set(&knob, given),
                 Wish::Reset => {
                     self.dirty.extend(self.overrides.keys().map(|knob| knob.group));
                     self.overrides.clear();
                 }
-                Wish::Exposure(stops) => {
-                    self.exposure = stops;
-                    let frame = self.image.as_ref().map(|image| Frame::of(image, stops));
-                    self.board.publish([("exposure", json!(stops))], frame);
+                Wish::Screen(screen) => {
+                    self.screen = screen;
+                    let frame = self.image.as_ref().map(|image| Frame::of(image, screen));
+                    self.put_screen(frame);
                 }
                 Wish::Verify(group) => {
                     if let Some(subject) = &self.subject {
@@ -178,18 +186,19 @@ impl Session {
     }
 
     /// Gives a parameter a value, if it is there and the value fits.
-    fn set(&mut self, knob: Knob, given: Option<Given>) {
-        let fits = |given: &Given| self.subject.as_ref().is_some_and(|subject| subject.fits(&knob, given));
-        match given {
-            Some(given) if fits(&given) => {
-                self.dirty.insert(knob.group);
-                self.overrides.insert(knob, given);
-            }
-            Some(_) => {}
-            None => {
-                if self.overrides.remove(&knob).is_some() {
-                    self.dirty.insert(knob.group);
+    fn set(&mut self, knob: &Knob, given: Option<Given>) {
+        let Some(subject) = &self.subject else { return };
+        for knob in subject.alike(knob) {
+            let changed = match &given {
+                Some(given) if subject.fits(&knob, given) => {
+                    self.overrides.insert(knob.clone(), given.clone());
+                    true
                 }
+                Some(_) => false,
+                None => self.overrides.remove(&knob).is_some(),
+            };
+            if changed {
+                self.dirty.insert(knob.group);
             }
         }
     }
@@ -236,7 +245,11 @@ impl Session {
                 self.trouble = None;
                 self.begin();
             }
-            Err(text) => self.fail(text),
+            Err(text) => {
+                // What mends it may be a file that nobody has asked for yet.
+                self.watched.any(true);
+                self.fail(text);
+            }
         }
         self.follow();
     }
@@ -264,25 +277,25 @@ impl Session {
         (self.stages, self.work) = (None, Work::None);
         let stages = Stages::new(&subject.scene, &settings, rate).map_err(|error| worded(&error));
         self.subject = Some(subject);
-        self.put_controls();
         self.stages = Some(stages?);
         Ok(())
     }
 
     fn compile(&mut self) -> Result<(), String> {
         let Some(subject) = &mut self.subject else { return Ok(()) };
-        let renewed = subject.compile(&self.source, &self.dirty, &mut self.overrides)?;
+        let Some(renewed) = subject.compile(&self.source, &self.dirty, &mut self.overrides)? else {
+            return self.load();
+        };
         let groups = subject.take(&self.source, renewed);
         self.dirty.clear();
-        self.put_controls();
         self.stages.iter_mut().for_each(|stages| stages.change(groups.clone()));
         Ok(())
     }
 
-    fn put_controls(&self) {
-        if let Some(subject) = &self.subject {
-            self.board.publish([("controls", controls(subject, &self.overrides))], None);
-        }
+    /// Puts up how it stands, with the controls as they are now: at once, so that a page asks once.
+    fn put_all(&self, state: &str) {
+        let controls = self.subject.as_ref().map(|subject| ("controls", controls(subject, &self.overrides)));
+        self.board.publish([("status", self.status(state))].into_iter().chain(controls), None);
     }
 
     /// Begins the picture anew.
@@ -294,16 +307,15 @@ impl Session {
         if let Err(error) = begun {
             return self.fail(worded(&error));
         }
-        self.board.publish([("status", self.status("rendering"))], None);
+        self.put_all("rendering");
     }
 
     /// Says what is wrong; the picture stays as it is.
     fn fail(&mut self, text: String) {
         self.work = Work::None;
         self.trouble = Some(text);
-        self.watched.any(true);
         self.since = None;
-        self.board.publish([("status", self.status("wrong"))], None);
+        self.put_all("wrong");
     }
 
     /// Watches what has been read since.
@@ -365,7 +377,7 @@ impl Session {
             self.waited = Some(since.elapsed().as_secs_f64() * 1e3);
         }
         self.shown = Instant::now();
-        let frame = Frame::of(&image, self.exposure);
+        let frame = Frame::of(&image, self.screen);
         let size = self.stages.as_ref().map_or([image.width, image.height], Stages::size);
         let about = &image.about;
         let picture = json!({
@@ -398,13 +410,15 @@ impl Session {
             }
             notes.push(note);
         }
+        // A group that another one stands for is not counted twice.
+        let shown = |knob: &&Knob| self.subject.iter().all(|subject| subject.stands_for(knob.group) == knob.group);
         json!({
             "state": state,
             "change": self.change,
             "file": self.source.argument.chars().take(300).collect::<String>(),
             "trouble": self.trouble,
             "notes": notes,
-            "set": self.overrides.len(),
+            "set": self.overrides.keys().filter(shown).count(),
         })
     }
 

@@ -1,6 +1,7 @@
 //! What the user has named, and how it is compiled.
 
 use crate::compile::Compiler;
+use crate::scene::names_shader;
 use std::path::{Path, PathBuf};
 
 /// What the user has named, and how it is compiled.
@@ -19,7 +20,7 @@ pub struct Source {
 impl Source {
     /// Is it a shader without a scene?
     pub fn is_shader(&self) -> bool {
-        !self.argument.trim_start().starts_with('<') && self.argument.ends_with(".osl")
+        names_shader(&self.argument)
     }
 
     /// The file that was named.

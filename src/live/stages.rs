@@ -9,7 +9,7 @@ use crate::render::{RenderError, Renderer, Settings};
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// Seconds that the first picture may take to trace.
 const PROMPT: f64 = 0.025;
@@ -28,8 +28,6 @@ struct Stage {
     renderer: Renderer,
     /// The change that it knows.
     epoch: u64,
-    /// It was stopped while a change was made, so that what it knows of lights and sky may be wrong.
-    spoiled: bool,
 }
 
 /// Renderers of one scene, of which one at a time is at work.
@@ -48,7 +46,7 @@ impl Stages {
     /// The scene cannot be rendered.
     pub fn new(scene: &Scene, settings: &Settings, rate: Option<f64>) -> Result<Self, RenderError> {
         let renderer = Renderer::new(scene, settings)?;
-        let whole = Stage { divisor: 1, renderer, epoch: 0, spoiled: false };
+        let whole = Stage { divisor: 1, renderer, epoch: 0 };
         let (rate, groups) = (rate.unwrap_or(FIRST_RATE), BTreeMap::new());
         Ok(Stages { stages: vec![whole], current: 0, epoch: 0, groups, rate })
     }
@@ -89,7 +87,7 @@ impl Stages {
                 let settings = whole.renderer.settings();
                 let (width, height) = (settings.width.div_ceil(divisor), settings.height.div_ceil(divisor));
                 let renderer = whole.renderer.beside(&Settings { width, height, ..settings.clone() })?;
-                self.stages.push(Stage { divisor, renderer, epoch: self.epoch, spoiled: false });
+                self.stages.push(Stage { divisor, renderer, epoch: self.epoch });
                 self.stages.len() - 1
             }
         };
@@ -114,18 +112,12 @@ impl Stages {
         let stage = &mut self.stages[number];
         let new = self.groups.iter().filter(|(_, (epoch, _))| *epoch > stage.epoch);
         let new: Vec<(usize, Group)> = new.map(|(material, (_, group))| (*material, group.clone())).collect();
-        if stage.spoiled {
-            // Nothing of the world before is kept.
-            let settings = stage.renderer.settings().clone();
-            stage.renderer.set_settings(&settings)?;
-        }
-        if !new.is_empty() {
-            stage.renderer.set_materials(new)?;
-        } else if !stage.spoiled {
-            stage.renderer.restart();
+        // What a stop leaves undone of a change is made up for when the render goes on.
+        match new.is_empty() {
+            true => stage.renderer.restart(),
+            false => stage.renderer.set_materials(new)?,
         }
         stage.epoch = self.epoch;
-        stage.spoiled = stage.renderer.stop().load(Ordering::Relaxed);
         Ok(())
     }
 

@@ -8,7 +8,9 @@ use crate::check::constants;
 use crate::compile::Shader;
 use crate::exec::Group;
 use crate::lang::types::Type;
-use crate::scene::{GroupCompiler, GroupSpec, Layer, Scene, SceneError, SceneProblem, SceneSource, ShaderFiles, Usage};
+use crate::scene::{
+    GroupCompiler, GroupSpec, Layer, PREVIEW_LAYER, Scene, SceneError, SceneProblem, SceneSource, ShaderFiles, Usage,
+};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -40,6 +42,8 @@ pub struct Subject {
     pub parts: Vec<Part>,
     /// The number of the group that the user is likely to care about.
     pub first: usize,
+    /// The text of the built-in scene, if it is that one.
+    preview: Option<String>,
     /// What compilers remark on a shader's own text.
     pub remarks: String,
     noted: Noted,
@@ -53,26 +57,12 @@ pub struct Renewed {
     group: Group,
 }
 
-/// The preview of a bare shader: a ball on a floor under a sky and a lamp.
-const PREVIEW: &str = r#"<World>
-<Camera eye="0,1.5,5" look_at="0,0.95,0" fov="46" res="640 480"/><Option max_bounces="int 6"/>
-<ShaderGroup>color radiance 0.30 0.32 0.36; shader sky layer1;</ShaderGroup><Background resolution="64"/>
-<ShaderGroup>color Cs 0.42 0.41 0.40; shader matte layer1;</ShaderGroup>
-<Quad corner="-30,0,-30" edge_x="0,0,60" edge_y="60,0,0"/>
-<ShaderGroup name="subject"><Shader name="SHADER" layer="layer1"/></ShaderGroup><Sphere center="0,1,0" radius="1"/>
-<ShaderGroup is_light="yes">float power 260; shader emitter layer1;</ShaderGroup>
-<Quad corner="-3.4,3.4,1.6" edge_x="1.6,0.9,0.9" edge_y="0.4,0.9,-1.9"/></World>"#;
-
 impl Source {
-    fn scene_source(&self, access: &Access) -> Result<SceneSource, SceneError> {
-        if !self.is_shader() {
-            return SceneSource::read(&self.argument, access);
+    fn scene_source(&self, files: &ShaderFiles) -> Result<SceneSource, SceneError> {
+        match self.is_shader() {
+            true => SceneSource::of_shader(self.path(), &self.search, files),
+            false => SceneSource::read(&self.argument, &files.access()),
         }
-        let name = self.path().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let escaped = name.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-        let folder = self.path().parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-        let text = PREVIEW.replace("SHADER", &escaped);
-        Ok(SceneSource { name: name.into(), text, folder: folder.to_owned() })
     }
 
     /// A compiler that knows no file yet.
@@ -116,7 +106,7 @@ impl Source {
         noted: &Noted,
     ) -> Result<Subject, SceneError> {
         let files = self.files(noted);
-        let source = self.scene_source(&files.access())?;
+        let source = self.scene_source(&files)?;
         let old = before.map_or(&[][..], |before| &before.parts);
         let recorder = Recorder { files: &files, old, overrides: Mutex::new(overrides), groups: Mutex::default() };
         let scene = Scene::from_source(&source, &self.search, &recorder)?;
@@ -130,9 +120,17 @@ impl Source {
             parts.push(Part { files: files_of(&shaders), spec, material, shaders });
         }
         overrides.retain(|knob, _| knob.group < parts.len());
-        let named = self.is_shader().then(|| parts.iter().position(|part| part.spec.name == "subject")).flatten();
-        let first = named.or_else(|| parts.iter().position(is_interesting)).unwrap_or(0);
-        Ok(Subject { scene, parts, first, remarks: self.remarks(), noted: noted.clone() })
+        let own = self.is_shader().then(|| parts.iter().position(|part| part.own_layer().is_some())).flatten();
+        let first = own.or_else(|| parts.iter().position(is_interesting)).unwrap_or(0);
+        let preview = self.is_shader().then_some(source.text);
+        Ok(Subject { scene, parts, first, preview, remarks: self.remarks(), noted: noted.clone() })
+    }
+}
+
+impl Part {
+    /// The layer of the shader that the built-in scene shows, if it is of that scene.
+    fn own_layer(&self) -> Option<usize> {
+        self.spec.layers.iter().position(|layer| layer.layer_name == PREVIEW_LAYER)
     }
 }
 
@@ -165,6 +163,25 @@ impl Subject {
         groups.map(|k| (self.parts[k].spec.usage != Usage::Displacement).then_some(k)).collect()
     }
 
+    /// The layer of a group that is the shader which the built-in scene shows, if it is that scene.
+    pub fn own_layer(&self, group: usize) -> Option<usize> {
+        self.preview.as_ref().and_then(|_| self.parts.get(group)?.own_layer())
+    }
+
+    /// All parameters that a page means by one: a shader alone is shown on more than one thing.
+    pub fn alike(&self, knob: &Knob) -> Vec<Knob> {
+        if self.own_layer(knob.group) != Some(knob.layer) {
+            return vec![knob.clone()];
+        }
+        let groups = (0..self.parts.len()).filter_map(|group| Some((group, self.own_layer(group)?)));
+        groups.map(|(group, layer)| Knob { group, layer, name: knob.name.clone() }).collect()
+    }
+
+    /// The group whose controls stand for those of this one as well.
+    pub fn stands_for(&self, group: usize) -> usize {
+        if self.own_layer(group).is_some() { self.first } else { group }
+    }
+
     /// Is there such a parameter, and does it take such a value?
     pub fn fits(&self, knob: &Knob, given: &Given) -> bool {
         let part = self.parts.get(knob.group);
@@ -179,7 +196,8 @@ impl Subject {
         self.parts.get(group).is_some_and(|part| part.spec.usage == Usage::Displacement)
     }
 
-    /// Compiles these groups anew, with the values of `overrides`, from which those go that no longer fit.
+    /// Compiles these groups anew, with the values of `overrides`, from which those go that no longer fit. Nothing when the built-in scene
+    /// shows the shader in another way now, so that all is to be loaded anew.
     ///
     /// # Errors
     /// What is wrong, for people to read.
@@ -188,8 +206,14 @@ impl Subject {
         source: &Source,
         groups: &BTreeSet<usize>,
         overrides: &mut Overrides,
-    ) -> Result<Vec<Renewed>, String> {
+    ) -> Result<Option<Vec<Renewed>>, String> {
         let files = source.files(&self.noted);
+        if self.preview.is_some() {
+            let now = source.scene_source(&files).map_err(|error| told(&error))?;
+            if self.preview.as_ref() != Some(&now.text) {
+                return Ok(None);
+            }
+        }
         let mut all = Vec::new();
         for &k in groups {
             let Some(part) = self.parts.get(k) else { continue };
@@ -197,7 +221,7 @@ impl Subject {
                 compiled(&files, k, &part.spec, Some(part), overrides).map_err(|error| told(&error))?;
             all.push(Renewed { part: k, shaders, group });
         }
-        Ok(all)
+        Ok(Some(all))
     }
 
     /// Takes groups that were compiled; gives the materials that have changed with their groups.

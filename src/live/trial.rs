@@ -32,11 +32,13 @@ impl Trial {
         board: &Arc<Board>,
     ) {
         let Some(part) = subject.parts.get(group) else { return };
-        let (Some(layer), Some(shader)) = (part.spec.layers.last(), part.shaders.last().cloned()) else { return };
+        let last = part.spec.layers.len().saturating_sub(1);
+        let number = subject.own_layer(group).unwrap_or(last);
+        let pair = part.spec.layers.get(number).zip(part.shaders.get(number).cloned());
+        let Some((layer, shader)) = pair else { return };
         if self.running.swap(true, Ordering::Relaxed) {
             return;
         }
-        let number = part.spec.layers.len() - 1;
         let value = |name: &str| {
             let knob = Knob { group, layer: number, name: name.to_owned() };
             let written = layer.params.iter().any(|param| param.name == name);

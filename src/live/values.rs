@@ -36,13 +36,12 @@ impl Given {
     /// The value as a scene would give it to a parameter of this type; nothing where it does not fit.
     pub fn param(&self, name: &str, ty: &Type, layer: &Layer) -> Option<ParamValue> {
         let kind = kind(ty)?;
-        let values = match (self, kind) {
-            (Given::Text(text), ParamType::String) => Values::Strings(vec![text.clone()]),
-            (Given::Numbers(numbers), ParamType::Int) if numbers.len() == 1 => Values::Ints(vec![numbers[0] as i32]),
-            (Given::Numbers(numbers), _) if kind != ParamType::String && numbers.len() == kind.components() => {
-                Values::Floats(numbers.iter().map(|&x| x as f32).collect())
-            }
-            _ => return None,
+        let values = match self {
+            Given::Text(text) if kind == ParamType::String => Values::Strings(vec![text.clone()]),
+            Given::Text(_) => return None,
+            Given::Numbers(numbers) if kind == ParamType::String || numbers.len() != kind.components() => return None,
+            Given::Numbers(numbers) if kind == ParamType::Int => Values::Ints(vec![numbers[0] as i32]),
+            Given::Numbers(numbers) => Values::Floats(numbers.iter().map(|&x| x as f32).collect()),
         };
         let (name, place, hints) = (name.to_owned(), layer.place.clone(), Hints::default());
         Some(ParamValue { kind, array: None, name, values, hints, place })

@@ -43,7 +43,7 @@ impl Watched {
             for path in event.paths {
                 if let Some(key) = matters.files.get(&path) {
                     inbox.push(Wish::Changed(key.clone()));
-                } else if matters.any {
+                } else if matters.any && !is_an_editors_own(&path) {
                     inbox.push(Wish::Changed(path));
                 }
             }
@@ -78,4 +78,10 @@ impl Watched {
     pub fn any(&self, any: bool) {
         self.matters.lock().unwrap_or_else(PoisonError::into_inner).any = any;
     }
+}
+
+/// Is it a file that editors keep for themselves, such as vim's swap file?
+fn is_an_editors_own(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with('.') || name.ends_with('~') || name == "4913"
 }

@@ -22,6 +22,8 @@ pub(super) struct Document {
     shared: Arc<str>,
     /// What is known of it; nothing after a change.
     study: Option<Arc<Study>>,
+    /// What was known before the change: to free it takes time, which there is when the editor has been told.
+    old: Option<Arc<Study>>,
     /// What was known when it last was whole.
     whole: Option<Arc<Study>>,
     /// The editor has not been told what is wrong with it.
@@ -70,7 +72,7 @@ impl Documents {
         let path = path.map(|path| key(&path));
         let shared = Arc::from(text.as_str());
         let text = Text::new(text);
-        let document = Document { text, version, name, path, shared, study: None, whole: None, stale: true };
+        let document = Document { text, version, name, path, shared, study: None, old: None, whole: None, stale: true };
         self.open.insert(uri.to_owned(), document);
         // It may be what others include.
         self.forget();
@@ -94,7 +96,8 @@ impl Documents {
         let Some(document) = self.open.get_mut(uri) else { return };
         change(&mut document.text);
         document.shared = Arc::from(document.text.as_str());
-        (document.version, document.study, document.stale) = (version, None, true);
+        document.old = document.study.take().or(document.old.take());
+        (document.version, document.stale) = (version, true);
         let Some(path) = document.path.clone() else { return };
         for (other, document) in &mut self.open {
             let includes = |study: &Arc<Study>| study.files().iter().any(|file| key(Path::new(file)) == path);
@@ -120,10 +123,15 @@ impl Documents {
         let study = Arc::new(Study::new(&compiler, &document.name, document.text.as_str()));
         let document = self.open.get_mut(uri)?;
         if study.is_whole() {
-            document.whole = Some(study.clone());
+            document.old = document.whole.replace(study.clone()).or(document.old.take());
         }
         document.study = Some(study.clone());
         Some(study)
+    }
+
+    /// Frees what nobody asks for any more.
+    pub(super) fn clear(&mut self) {
+        self.open.values_mut().for_each(|document| document.old = None);
     }
 
     /// What was known of a text when it last was whole.

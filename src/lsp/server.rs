@@ -208,6 +208,7 @@ impl<W: Write> Server<W> {
             let version = document.version;
             self.tell(&uri, Some(version), &list)?;
         }
+        self.documents.clear();
         Ok(())
     }
 

@@ -101,10 +101,7 @@ impl Study {
 
     /// What each token stands for.
     fn meanings(&self) -> Vec<(u32, Meaning)> {
-        let mut all: Vec<(u32, Meaning)> =
-            self.uses.iter().map(|(token, at)| (*token, self.notes.uses[*at].meaning)).collect();
-        all.sort_unstable_by_key(|(token, _)| *token);
-        all
+        self.noted().map(|(token, used)| (token, used.meaning)).collect()
     }
 
     /// What is said, and where.

@@ -1,12 +1,15 @@
 //! A text and all that is known of it.
 
-use crate::check::notes::{Meaning, Notes};
+use crate::check::notes::{Meaning, Notes, Use};
 use crate::compile::{Checked, Compiler};
 use crate::lang::builtins;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use velour_grammar::Span;
 use velour_grammar::places::{MAIN_FILE, RawKind, RawToken, TextRange, raw_tokens};
+
+/// No note.
+const NONE: u32 = u32::MAX;
 
 /// A text and all that is known of it.
 #[derive(Clone, Debug)]
@@ -19,8 +22,8 @@ pub struct Study {
     pub(super) raw: Vec<RawToken>,
     pub(super) checked: Checked,
     pub(super) notes: Notes,
-    /// What is noted of each expanded token, by its number.
-    pub(super) uses: HashMap<u32, usize>,
+    /// Which note is about each expanded token; [`NONE`] where there is none.
+    uses: Vec<u32>,
     /// The expanded tokens that are spelled in the text, by where they begin.
     spelled: Vec<(u32, u32)>,
 }
@@ -50,15 +53,15 @@ impl Study {
     pub fn new(compiler: &Compiler, name: &str, text: &str) -> Self {
         let (checked, notes) = compiler.study(name, text);
         let sources = &checked.sources;
-        let mut uses = HashMap::with_capacity(notes.uses.len());
-        for (at, used) in notes.uses.iter().enumerate() {
+        let mut uses = vec![NONE; sources.token_count() as usize];
+        for (at, used) in (0..).zip(&notes.uses) {
             if let Some(token) = sources.name_token(used.span, &used.name) {
-                uses.insert(token, at);
+                uses[token as usize] = at;
             }
         }
-        let mut spelled: Vec<(u32, u32)> = uses
-            .keys()
-            .filter_map(|token| sources.spelled(*token).map(|place| (place, *token)))
+        let noted = (0..).zip(&uses).filter(|(_, at)| **at != NONE).map(|(token, _)| token);
+        let mut spelled: Vec<(u32, u32)> = noted
+            .filter_map(|token: u32| sources.spelled(token).map(|place| (place, token)))
             .filter(|(place, _)| place.file == MAIN_FILE)
             .map(|(place, token)| (place.start, token))
             .collect();
@@ -66,6 +69,16 @@ impl Study {
         let raw = raw_tokens(text);
         let compiler = compiler.clone();
         Study { compiler, name: name.to_owned(), text: text.to_owned(), raw, checked, notes, uses, spelled }
+    }
+
+    /// What is noted of an expanded token.
+    fn used(&self, token: u32) -> Option<&Use> {
+        self.uses.get(token as usize).and_then(|at| self.notes.uses.get(*at as usize))
+    }
+
+    /// The expanded tokens of which something is noted, in order.
+    pub(super) fn noted(&self) -> impl Iterator<Item = (u32, &Use)> {
+        (0..self.uses.len() as u32).filter_map(|token| self.used(token).map(|used| (token, used)))
     }
 
     /// The text.
@@ -90,9 +103,7 @@ impl Study {
 
     /// Is a file one that comes with velour?
     pub fn comes_with_velour(&self, name: &str) -> bool {
-        let options = &self.compiler.options;
-        let own = options.own_files.iter().any(|(own, _)| own == name);
-        own || options.prelude.as_ref().is_some_and(|(prelude, _)| prelude == name)
+        self.compiler.options.own_files.iter().any(|(own, _)| own == name)
     }
 
     /// What stands at a byte of the text, or ends there.
@@ -120,8 +131,8 @@ impl Study {
         let at = self.spelled.partition_point(|(place, _)| *place < start);
         // A macro that is called twice has made its names twice: the last one stands for all.
         let expanded = self.spelled[at..].iter().take_while(|(place, _)| *place == start).last();
-        if let Some(used) = expanded.and_then(|(_, token)| self.uses.get(token)) {
-            return Some(Symbol::Named(self.notes.uses[*used].meaning));
+        if let Some(used) = expanded.and_then(|(_, token)| self.used(*token)) {
+            return Some(Symbol::Named(used.meaning));
         }
         let word = &self.text[token.start..token.end];
         let here = |place: &TextRange| place.file == MAIN_FILE && place.start == start;
@@ -183,11 +194,8 @@ impl Study {
 
     /// The expanded tokens that stand for a meaning; only those that declare it, if that is asked.
     pub(super) fn tokens_of(&self, meaning: Meaning, declaring: bool) -> BTreeSet<u32> {
-        let wanted = |at: &usize| {
-            let used = &self.notes.uses[*at];
-            used.meaning == meaning && (used.declares || !declaring)
-        };
-        self.uses.iter().filter(|(_, at)| wanted(at)).map(|(token, _)| *token).collect()
+        let wanted = |used: &Use| used.meaning == meaning && (used.declares || !declaring);
+        self.noted().filter(|(_, used)| wanted(used)).map(|(token, _)| token).collect()
     }
 
     /// Where something is declared, the body of a function before its prototypes; of an include the start of its file.

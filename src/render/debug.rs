@@ -2,6 +2,7 @@
 
 use super::accel::{Hit, NOTHING, Ray};
 use super::host::host;
+use super::plan::Needs;
 use super::points::{fill, fill_sky};
 use super::renderer::Renderer;
 use super::segment::{Segment, ray_type};
@@ -37,7 +38,9 @@ impl Renderer {
         };
         let material = world.material_of(hit.primitive);
         let segment = Segment { origin: eye, direction, hit, width: 0.0, spread, ray_type: ray_type::CAMERA };
-        fill(&mut points, &world.scene.geometry, [&segment].into_iter(), &world.material(material).1.needs);
+        // Whoever looks at a pixel wants to know where it is, also where its shader does not.
+        let needs = Needs { uv: true, ..world.material(material).1.needs };
+        fill(&mut points, &world.scene.geometry, [&segment].into_iter(), &needs);
         (Some(material), points)
     }
 }

@@ -102,5 +102,6 @@ pub use plan::{MaterialPlan, Needs, Plan};
 pub use progress::{Progress, Silent};
 pub use renderer::{Renderer, render};
 pub use settings::{Filter, Frame, LightChoice, LightPoints, LightStrategy, Settings, Terminator};
+#[cfg(feature = "cli")]
 pub(crate) use view::srgb;
 pub use view::{Screen, View};

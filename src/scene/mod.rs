@@ -37,7 +37,7 @@ pub use group::{Connection, GroupCompiler, GroupSpec, Hints, Layer, ParamType, P
 pub use nearest::nearest;
 pub use obj::{Attribute as MeshAttribute, LineFlaw};
 pub use places::Places;
-pub use preview::PREVIEW_LAYER;
+pub use preview::{PREVIEW_LAYER, names_shader};
 pub use scene::{Background, Material, Options, Scene};
 pub use shipped::{SHIPPED, SHIPPED_SCENES, is_shipped_shader};
 pub use source::SceneSource;

@@ -3,6 +3,7 @@
 use super::compiler::ShaderFiles;
 use super::error::{SceneError, SceneProblem};
 use super::scene::Scene;
+use super::shipped::is_shipped_shader;
 use super::source::SceneSource;
 use crate::compile::Shader;
 use crate::lang::types::{Base, Length, Type};
@@ -26,6 +27,19 @@ impl Scene {
     /// # Errors
     /// The shader is not found, or wrong.
     pub fn of_shader(file: &Path, search: &[PathBuf], compiler: &ShaderFiles) -> Result<Scene, SceneError> {
+        let source = SceneSource::of_shader(file, search, compiler)?;
+        let mut scene = Scene::from_source(&source, search, compiler)?;
+        scene.name = file.display().to_string();
+        Ok(scene)
+    }
+}
+
+impl SceneSource {
+    /// The text of the scene that [`Scene::of_shader`] shows; it depends on what the shader puts out.
+    ///
+    /// # Errors
+    /// The shader is not found, or wrong.
+    pub fn of_shader(file: &Path, search: &[PathBuf], compiler: &ShaderFiles) -> Result<SceneSource, SceneError> {
         let folder = file.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
         let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
         let mut folders = vec![folder.to_owned()];
@@ -42,10 +56,17 @@ impl Scene {
             }
         };
         let text = scene_text(&name, &shader);
-        let source = SceneSource { name: "<built-in scene>".into(), text, folder: folder.to_owned() };
-        let mut scene = Scene::from_source(&source, search, compiler)?;
-        scene.name = file.display().to_string();
-        Ok(scene)
+        Ok(SceneSource { name: "<built-in scene>".into(), text, folder: folder.to_owned() })
+    }
+}
+
+/// Does an argument name a shader, which the built-in scene shows, and no scene?
+pub fn names_shader(argument: &str) -> bool {
+    let path = Path::new(argument);
+    match path.extension() {
+        _ if argument.trim_start().starts_with('<') => false,
+        Some(extension) => extension == "osl" || extension == "oso",
+        None => is_shipped_shader(argument) && !path.exists(),
     }
 }
 

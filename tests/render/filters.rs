@@ -38,7 +38,7 @@ fn a_box_leaves_no_two_pixels_noise_in_common_and_a_tent_does() {
         assert!(found.iter().all(|r| r.abs() < 0.05), "{filter:?}: {found:?}");
     }
     let found = correlation(Filter::Tent);
-    assert!(found.iter().all(|r| *r > 0.2), "a tent: {found:?}");
+    assert!(found.iter().all(|r| *r > 0.12), "a tent: {found:?}");
 }
 
 #[test]

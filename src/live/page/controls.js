@@ -206,7 +206,7 @@ export function draw(root, group, number) {
 // What was changed, as a scene would write it.
 export function written(groups) {
   const lines = [];
-  for (const group of groups) {
+  for (const group of groups.filter((group) => group.as === null)) {
     for (const layer of group.layers) {
       for (const param of layer.params.filter((param) => param.set)) {
         const value = param.value.map((x) => (typeof x === "string" ? JSON.stringify(x) : round(x))).join(" ");

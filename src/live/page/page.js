@@ -42,7 +42,7 @@ function take(news, bytes) {
   if (news.status) drawStatus();
   if (news.picture || news.status) drawFigures();
   if (news.verify) drawVerify();
-  if (news.exposure !== undefined && document.activeElement !== by("exposure")) showStops(news.exposure);
+  if (news.screen && document.activeElement !== by("exposure")) showScreen(news.screen);
   if ((news.picture && !news.picture.coarse && looked !== news.picture.change) || news.status?.state === "wrong") lookAgain();
 }
 
@@ -80,7 +80,7 @@ function drawFigures() {
   const all = [
     entry("", picture.whole.join(" × ")),
     entry("samples", least === most ? most : `${least} to ${most}`),
-    entry("error", picture.goal ? `${error} of ${picture.goal}` : error),
+    entry("error", picture.goal ? `${error} of ${Number(picture.goal.toPrecision(2))}` : error),
   ];
   if (picture.waited !== null) all.push(entry("first picture", `${Math.round(picture.waited)} ms`));
   by("figures").replaceChildren(...all);
@@ -161,8 +161,8 @@ function drawLook(found) {
     by("where").textContent = found.nothing ? `${found.x}, ${found.y}: nothing` : found.trouble ? "no pixels while something is wrong" : "";
     return;
   }
-  const place = `u ${found.uv[0].toFixed(3)}  v ${found.uv[1].toFixed(3)}`;
-  by("where").textContent = `${found.x}, ${found.y}   ${found.name ?? ""}   ${place}${kept ? "   kept, Esc lets go" : ""}`;
+  const place = `u ${found.uv[0].toFixed(3)}, v ${found.uv[1].toFixed(3)}`;
+  by("where").textContent = [`${found.x}, ${found.y}`, found.name, place, kept && "kept, Esc lets go"].filter(Boolean).join(" · ");
   pixel.draw(found);
   shown = found;
   if (kept && found.group !== null && kept.fresh) {
@@ -209,7 +209,9 @@ function drawControls() {
   const { groups, first } = known.controls;
   const menu = by("group");
   if (group === null || group >= groups.length) group = first;
-  menu.replaceChildren(...groups.map((entry, k) => Object.assign(document.createElement("option"), { value: k, textContent: entry.name })));
+  group = groups[group].as ?? group;
+  const option = (entry, k) => (entry.as === null ? [Object.assign(document.createElement("option"), { value: k, textContent: entry.name })] : []);
+  menu.replaceChildren(...groups.flatMap(option));
   menu.value = group;
   if (groups[group]) controls.draw(by("controls"), groups[group], group);
   const text = controls.written(groups);
@@ -230,11 +232,17 @@ function showStops(stops) {
   by("exposure").value = stops;
   by("stops").textContent = `${stops > 0 ? "+" : ""}${Number(stops).toFixed(1)} EV`;
 }
-by("exposure").oninput = (event) => {
-  showStops(event.target.value);
-  controls.send("/exposure", { stops: Number(event.target.value) });
-};
-by("exposure").ondblclick = () => { showStops(0); controls.send("/exposure", { stops: 0 }); };
+function showScreen(screen) {
+  showStops(screen.stops);
+  by("screen").value = screen.view;
+}
+function sendScreen() {
+  showStops(by("exposure").value);
+  controls.send("/screen", { stops: Number(by("exposure").value), view: by("screen").value });
+}
+by("exposure").oninput = sendScreen;
+by("exposure").ondblclick = () => { by("exposure").value = 0; sendScreen(); };
+by("screen").onchange = sendScreen;
 
 // ---- verify
 

@@ -59,6 +59,7 @@ function rings(most) {
 function plot(canvas, look) {
   const scale = window.devicePixelRatio || 1;
   const { clientWidth: w, clientHeight: h } = canvas;
+  if (w < 80 || h < 80) return;
   canvas.width = w * scale;
   canvas.height = h * scale;
   const c = canvas.getContext("2d");
