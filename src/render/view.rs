@@ -170,7 +170,7 @@ mod tests {
             before = now;
         }
         assert!(before.iter().all(|c| *c > 0.97), "a lamp is white: {before:?}");
-        assert_eq!(Screen::default().encode([f32::MAX; 3]), [1.0; 3]);
+        assert!(Screen::default().encode([f32::MAX; 3]).iter().all(|c| *c > 0.9999 && *c <= 1.0));
         assert_eq!(Screen::default().encode([-1.0, 0.0, 0.0]), [0.0; 3]);
     }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 /// Steps of the table.
-const STEPS: usize = 1024;
+const STEPS: usize = 8192;
 /// How far the window reaches from the middle of its pixel, in pixels.
 const REACH: f64 = 1.5;
 
