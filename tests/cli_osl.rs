@@ -223,7 +223,7 @@ fn render_looks_at_one_pixel_and_refuses_what_means_nothing() {
         (vec!["render", "scene.xml", "--debug-pixel", "8", "0", "--res", "8", "8"], "there is no pixel 8 0"),
         (
             vec!["render", "scene.xml", "-o", "a.png", "-r", "8", "8", "-r", "9", "9"],
-            "--res and --debug-pixel are given once",
+            "--res, --crop and --debug-pixel are given once",
         ),
         (vec!["tree", "stripes.osl", "--view", "nan"], "--view and --uv take finite numbers"),
     ] {
