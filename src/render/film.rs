@@ -12,7 +12,7 @@
 //! sums kept apart by source pixel did not.
 
 use super::exact::{self, PARTS, Sums};
-use super::settings::{Filter, HALVES, Settings};
+use super::settings::{HALVES, Settings};
 use super::tile::Tile;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -26,8 +26,6 @@ pub struct TileSums {
     halves: [HalfSums; HALVES],
     /// Sums in a row, the rim's included.
     across: usize,
-    /// Samples count for their own pixel alone.
-    own: bool,
 }
 
 /// The sums of one half, row by row, and how many samples each pixel has had.
@@ -39,8 +37,7 @@ struct HalfSums {
 
 impl TileSums {
     /// Makes room for `tile`, in the first `halves`; what is there stays.
-    pub fn open(&mut self, tile: &Tile, halves: usize, filter: Filter) {
-        self.own = filter != Filter::Tent;
+    pub fn open(&mut self, tile: &Tile, halves: usize) {
         let (across, down) = (tile.width as usize + 2, tile.height as usize + 2);
         self.across = across;
         self.halves[..halves].iter_mut().for_each(|half| half.sums.open(across * down));
@@ -49,7 +46,7 @@ impl TileSums {
     /// Adds a sample of the tile's pixel (`x`, `y`) that lies at `position` in it, both coordinates in [0, 1].
     #[inline]
     pub fn add(&mut self, half: usize, [x, y]: [u32; 2], position: [f32; 2], light: [f32; 3], alpha: f32) {
-        let [(column, columns), (row, rows)] = if self.own { [OWN; 2] } else { position.map(taps) };
+        let ((column, columns), (row, rows)) = (taps(position[0]), taps(position[1]));
         // Pixel (0, 0) is at (1, 1) of the sums, and tap 1 is the pixel itself.
         let first = (y as usize + row) * self.across + x as usize + column;
         self.halves[half].sums.splat(first, self.across, columns, rows, light, alpha);
@@ -73,10 +70,8 @@ impl TileSums {
     }
 }
 
-/// The own pixel alone.
-const OWN: (usize, [f64; 2]) = (1, [1.0, 0.0]);
-
-/// The first of two neighbouring pixels (0 before, 1 the own) that a place in a pixel counts for, and both weights.
+/// The first of two neighbouring pixels (0 before, 1 the own) that a place in a pixel counts for, and both weights. The middle counts for the
+/// own pixel alone.
 #[inline]
 fn taps(x: f32) -> (usize, [f64; 2]) {
     let x = f64::from(x);
@@ -267,7 +262,7 @@ mod tests {
         for number in 0..Tile::count(settings) {
             let tile = Tile::number(settings, number);
             let mut sums = film.take(number);
-            sums.open(&tile, 1, Filter::Tent);
+            sums.open(&tile, 1);
             let side = side(number);
             for i in 0..side * side {
                 let at = [i % side, i / side].map(|k| (k as f32 + 0.5) / side as f32);

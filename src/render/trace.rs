@@ -73,7 +73,7 @@ pub fn render_tile(
     [stop, pause]: [&dyn Fn() -> bool; 2],
 ) -> u32 {
     let halves = world.settings.halves();
-    sums.open(tile, halves, world.settings.filter);
+    sums.open(tile, halves);
     wave.shading.go_on();
     let mut first = samples.start;
     while first < samples.end {

@@ -4,6 +4,7 @@ use crate::render::camera::directions;
 use crate::render::crossing::Crossing;
 use crate::render::path::Path;
 use crate::render::random;
+use crate::render::settings::Filter;
 use crate::render::wave::Wave;
 use crate::render::world::World;
 use glam::Vec3;
@@ -40,7 +41,11 @@ pub fn start(world: &World, wave: &mut Wave, x: u32, y: u32, samples: Range<u32>
     if world.plan.clear {
         wave.crossings.resize(first as usize + len, Crossing::START);
     }
-    wave.positions.extend(across.iter().zip(down).map(|(x, y)| [*x, *y]));
+    match settings.filter {
+        Filter::Tent => wave.positions.extend(across.iter().zip(down).map(|(x, y)| [*x, *y])),
+        // To the film, what counts for its own pixel alone lies in the middle of it.
+        Filter::Box | Filter::BlackmanHarris => wave.positions.extend(across.iter().map(|_| [0.5, 0.5])),
+    }
     wave.paths.extend((0..len).map(|lane| {
         let direction = lanes.directions.get(lane);
         let spread = if world.plan.cones { world.camera.spread(direction) } else { 0.0 };
