@@ -179,6 +179,31 @@ fn a_swept_displacement_moves_its_surfaces_anew() {
 }
 
 #[test]
+fn a_value_that_moves_one_surface_and_colors_another_does_both_in_every_cell() {
+    let folder = folder();
+    let folder = folder.path();
+    // The color is of the material that comes first, the displacement of the second.
+    std::fs::write(folder.join("lift.osl"), "displacement lift(float level = 0) { P += vector(0, 0.5 * level, 0); }")
+        .unwrap();
+    let scene = r#"<World><Camera eye="0,0,4" look_at="0,0,0"/>
+        <ShaderGroup name="left">shader pattern a; shader red b; connect a.Cout b.base;</ShaderGroup><Sphere center="-0.7,0,0" radius="0.4"/>
+        <ShaderGroup name="right" type="displacement">shader lift l;</ShaderGroup>
+        <ShaderGroup name="right">shader matte m;</ShaderGroup><Sphere center="0.5,-0.3,0" radius="0.3" resolution="16"/>
+        <ShaderGroup>color radiance 1 1 1; shader sky l1;</ShaderGroup><Background/></World>"#;
+    std::fs::write(folder.join("both.xml"), scene).unwrap();
+    let sheet = ["render", "both.xml", "--sweep", "level", "0.25:1:2", "-o", "s.exr"];
+    let (code, error) = run(folder, &[&sheet[..], &SMALL[..], &["4"]].concat());
+    assert_eq!((code, error.lines().count()), (0, 1), "{error}");
+    let sheet = image::open(folder.join("s.exr")).unwrap().to_rgb32f();
+    let alone = ["render", "both.xml", "--param", "level", "1", "-o", "p.exr"];
+    assert_eq!(run(folder, &[&alone[..], &SMALL[..], &["4"]].concat()).0, 0);
+    let alone = image::open(folder.join("p.exr")).unwrap().to_rgb32f();
+    for (x, y) in (0..36).flat_map(|y| (0..48).map(move |x| (x, y))) {
+        assert_eq!(sheet.get_pixel(48 + x, y), alone.get_pixel(x, y), "{x} {y}");
+    }
+}
+
+#[test]
 fn looks_are_of_png_alone_and_by_their_formulas() {
     let folder = folder();
     let folder = folder.path();

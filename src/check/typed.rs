@@ -37,6 +37,18 @@ pub struct Shader {
     pub body: Vec<Stmt>,
 }
 
+impl Shader {
+    /// Its parameters with the variables that hold them, in order.
+    pub fn declared(&self) -> impl Iterator<Item = (&ShaderParam, &Variable)> {
+        self.params.iter().map(|param| (param, &self.variables[param.var.0 as usize]))
+    }
+
+    /// The parameter of a name.
+    pub fn param(&self, name: &str) -> Option<(&ShaderParam, &Variable)> {
+        self.declared().find(|(_, variable)| variable.name == name)
+    }
+}
+
 /// A shader parameter.
 #[derive(Clone, Debug)]
 pub struct ShaderParam {

@@ -30,10 +30,6 @@ impl Failure {
 
     /// A scene that cannot be rendered.
     pub fn of_render(error: RenderError) -> Self {
-        // What a shader has to say begins with its own place.
-        Failure::Wrong(match error {
-            RenderError::Shader(message) => message,
-            other => format!("error: {other}"),
-        })
+        Failure::Wrong(error.told())
     }
 }

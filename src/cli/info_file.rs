@@ -10,8 +10,8 @@ use velour_grammar::json;
 pub fn shader_text(shader: &Shader) -> String {
     let mut out = format!("{} \"{}\"\n", kind_of(shader), shader.name);
     out.extend(shader.metadata.iter().map(|entry| metadata_text("\t\t", entry)));
-    for param in &shader.params {
-        out += &param_text(shader, param);
+    for (param, variable) in shader.declared() {
+        out += &param_text(param, variable);
     }
     out
 }
@@ -29,8 +29,7 @@ fn kind_of(shader: &Shader) -> &'static str {
 /// default.
 pub fn shader_lines(shader: &Shader) -> String {
     let mut out = format!("{} {}\n", kind_of(shader), shader.name);
-    for param in &shader.params {
-        let variable = &shader.variables[param.var.0 as usize];
+    for (param, variable) in shader.declared() {
         let output = if param.output { "output " } else { "" };
         let default = param.default.as_ref().and_then(|value| known(&variable.ty, value));
         out += &format!(
@@ -46,8 +45,7 @@ pub fn shader_lines(shader: &Shader) -> String {
 /// The declaration as JSON: `kind`, `name`, `metadata`, and `params` with `name`, `type`, `output`, `default` (a list of numbers and
 /// strings, or null where it is computed) and `metadata`.
 pub fn shader_json(shader: &Shader) -> String {
-    let params = shader.params.iter().map(|param| {
-        let variable = &shader.variables[param.var.0 as usize];
+    let params = shader.declared().map(|(param, variable)| {
         format!(
             "\n  {{\"name\":{},\"type\":{},\"output\":{},\"default\":{},\"metadata\":{}}}",
             json(&variable.name),
@@ -82,8 +80,7 @@ fn json_value(value: &Expr) -> String {
     format!("[{}]", parts.join(","))
 }
 
-fn param_text(shader: &Shader, param: &ShaderParam) -> String {
-    let variable = &shader.variables[param.var.0 as usize];
+fn param_text(param: &ShaderParam, variable: &Variable) -> String {
     let output = if param.output { "output " } else { "" };
     let mut out = format!("    \"{}\" \"{output}{}\"\n", variable.name, declared_type(variable, param));
     match &variable.ty.structure() {

@@ -338,7 +338,7 @@ fn go_on(args: &RenderArgs, renderer: &mut Renderer) -> Result<(), Failure> {
 }
 
 /// Holds room on the disk for what the render will write.
-fn hold(path: &std::path::Path, renderer: &Renderer, part: bool) -> Result<Room, Failure> {
+fn hold(path: &Path, renderer: &Renderer, part: bool) -> Result<Room, Failure> {
     let help = "help: make room, name a file elsewhere with -o, or render with --no-hold and hope";
     output::hold(path, renderer.settings(), part).map_err(|error| Failure::Usage(format!("error: {error}\n  {help}")))
 }

@@ -159,28 +159,23 @@ impl Sheet<'_> {
 /// The renderer with what `shaders` make of the scene's groups now; its hierarchy stays, unless other surfaces are moved.
 fn changed(mut renderer: Renderer, scene: &Scene, shaders: &ShaderFiles) -> Result<Renderer, Failure> {
     let compile = |spec: &GroupSpec| shaders.compile(spec).map_err(Failure::of_scene);
-    let (mut moved, mut groups) = (None, Vec::new());
-    for (number, material) in scene.materials.iter().enumerate() {
+    let (mut materials, mut surfaces, mut moves) = (renderer.scene().materials.clone(), Vec::new(), false);
+    for (number, material) in materials.iter_mut().enumerate() {
         if let Some(spec) = material.displacement_spec.as_ref().filter(|spec| shaders.sets(spec)) {
-            let moved =
-                moved.get_or_insert_with(|| Scene { materials: renderer.scene().materials.clone(), ..scene.clone() });
-            moved.materials[number].displacement = Some(compile(spec)?);
+            material.displacement = Some(compile(spec)?);
+            moves = true;
         }
         if shaders.sets(&material.surface_spec) {
-            let group = compile(&material.surface_spec)?;
-            match &mut moved {
-                Some(moved) => moved.materials[number].surface = group,
-                None => groups.push((number, group)),
-            }
+            material.surface = compile(&material.surface_spec)?;
+            surfaces.push((number, material.surface.clone()));
         }
     }
-    match moved {
-        None => {
-            renderer.set_materials(groups).map_err(Failure::of_render)?;
-            Ok(renderer)
-        }
-        Some(scene) => Renderer::new(&scene, &renderer.settings().clone()).map_err(Failure::of_render),
+    if moves {
+        let scene = Scene { materials, ..scene.clone() };
+        return Renderer::new(&scene, renderer.settings()).map_err(Failure::of_render);
     }
+    renderer.set_materials(surfaces).map_err(Failure::of_render)?;
+    Ok(renderer)
 }
 
 /// Says how large the sheet would be, when that is too large.

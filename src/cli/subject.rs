@@ -20,9 +20,9 @@ impl Subject<'_> {
 
     /// The path of a parameter that is called so on the command line.
     pub fn param(&self, name: &str) -> String {
-        let own = self.is_shader() && name.strip_prefix(PREVIEW_LAYER).is_none_or(|rest| !rest.starts_with('.'));
         // The built-in scene has shaders of its own, whose parameters are not meant.
-        if own { format!("{PREVIEW_LAYER}.{name}") } else { name.to_owned() }
+        let bare = self.is_shader() && own_name(name).is_none();
+        if bare { format!("{PREVIEW_LAYER}.{name}") } else { name.to_owned() }
     }
 
     /// Loads it, by the parameters that `shaders` has been given, all of which must be there.
@@ -39,10 +39,7 @@ impl Subject<'_> {
     }
 
     fn no_param(&self, path: &str, near: Option<&str>) -> Failure {
-        let strip = |path: &str| {
-            let own = path.strip_prefix(PREVIEW_LAYER).and_then(|rest| rest.strip_prefix('.'));
-            own.filter(|_| self.is_shader()).unwrap_or(path).to_owned()
-        };
+        let strip = |path: &str| own_name(path).filter(|_| self.is_shader()).unwrap_or(path).to_owned();
         let what = if self.is_shader() { "the shader" } else { "no shader of the scene" };
         let has = if self.is_shader() { "has no parameter" } else { "has a parameter" };
         let help = match near {
@@ -52,4 +49,9 @@ impl Subject<'_> {
         };
         Failure::Usage(format!("error: {what} {has} `{}`\n  help: {help}", strip(path)))
     }
+}
+
+/// The name of a parameter of the shader that the built-in scene shows, if a path leads to one.
+fn own_name(path: &str) -> Option<&str> {
+    path.strip_prefix(PREVIEW_LAYER)?.strip_prefix('.')
 }

@@ -8,9 +8,7 @@ use crate::lang::types::{Base, Element, Length, Type};
 
 /// The type of a parameter or of the part of it that a path names.
 pub(super) fn find_type(layer: &Layer, path: &str) -> Result<Type, GroupError> {
-    let variables = &layer.shader.variables;
-    let mut params = layer.shader.params.iter().map(|p| (p, &variables[p.var.0 as usize]));
-    let Some((param, variable)) = params.find(|(_, v)| v.name == root(path)) else {
+    let Some((param, variable)) = layer.shader.param(root(path)) else {
         let shader = layer.shader.name.clone();
         return Err(param_error(layer, path, GroupProblem::NoParam { shader, path: path.to_owned() }));
     };
@@ -27,10 +25,8 @@ pub(super) fn find_type(layer: &Layer, path: &str) -> Result<Type, GroupError> {
 
 /// Does the shader let a parameter be fed? Not with `[[int allowconnect = 0]]`.
 pub(super) fn allows_connection(layer: &Layer, path: &str) -> bool {
-    let variables = &layer.shader.variables;
-    let param = layer.shader.params.iter().find(|p| variables[p.var.0 as usize].name == root(path));
     let refuses = |entry: &Metadata| entry.name == "allowconnect" && matches!(entry.value.kind, ExprKind::Int(0));
-    !param.is_some_and(|param| param.metadata.iter().any(refuses))
+    !layer.shader.param(root(path)).is_some_and(|(param, _)| param.metadata.iter().any(refuses))
 }
 
 /// How long a parameter is that takes any number of elements: as a whole it has no bound, and its parts are counted by
@@ -143,7 +139,7 @@ pub(super) fn connects(from: &Type, to: &Type) -> bool {
 /// An error about a parameter, with the names of those there are.
 pub(super) fn param_error(layer: &Layer, name: &str, problem: GroupProblem) -> GroupError {
     let shader = &layer.shader;
-    let names: Vec<&str> = shader.params.iter().map(|p| shader.variables[p.var.0 as usize].name.as_str()).collect();
+    let names: Vec<&str> = shader.declared().map(|(_, variable)| variable.name.as_str()).collect();
     let help = if names.is_empty() {
         "the shader has no parameters".to_owned()
     } else {

@@ -24,12 +24,11 @@ impl Shader {
 
     /// The names of its parameters, in the order of the text.
     pub fn params(&self) -> impl Iterator<Item = &str> {
-        let variables = &self.typed.variables;
-        self.typed.params.iter().map(|param| variables[param.var.0 as usize].name.as_str())
+        self.typed.declared().map(|(_, variable)| variable.name.as_str())
     }
 
     /// Does it have the parameter that a path, such as `name`, `name.field` or `name[2]`, leads into?
     pub fn has(&self, path: &str) -> bool {
-        self.params().any(|name| name == root(path))
+        self.typed.param(root(path)).is_some()
     }
 }

@@ -70,10 +70,8 @@ fn params(
     (group, number): (usize, usize),
     overrides: &Overrides,
 ) -> Vec<Value> {
-    let variables = &shader.typed.variables;
     let mut out = Vec::new();
-    for param in shader.typed.params.iter().filter(|param| !param.output) {
-        let variable = &variables[param.var.0 as usize];
+    for (param, variable) in shader.typed.declared().filter(|(param, _)| !param.output) {
         let Some(kind) = kind(&variable.ty) else { continue };
         let name = variable.name.to_string();
         let mut shown = serde_json::Map::new();

@@ -13,7 +13,7 @@ use super::values::Given;
 use super::watch::Watched;
 use crate::exec::Report;
 use crate::limits::{PRINTED, PRINTED_BYTES};
-use crate::render::{Image, Progress, RenderError, Screen, Settings, View};
+use crate::render::{Image, Progress, Screen, Settings, View};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -275,7 +275,7 @@ impl Session {
         let rate = self.stages.as_ref().map(Stages::rate);
         // The old one goes first: a large scene need not fit twice.
         (self.stages, self.work) = (None, Work::None);
-        let stages = Stages::new(&subject.scene, &settings, rate).map_err(|error| worded(&error));
+        let stages = Stages::new(&subject.scene, &settings, rate).map_err(|error| error.told());
         self.subject = Some(subject);
         self.stages = Some(stages?);
         Ok(())
@@ -305,7 +305,7 @@ impl Session {
         self.inbox.stops(stages.stops());
         self.work = if stages.divisor() > 1 { Work::Coarse } else { Work::Whole };
         if let Err(error) = begun {
-            return self.fail(worded(&error));
+            return self.fail(error.told());
         }
         self.put_all("rendering");
     }
@@ -347,7 +347,7 @@ impl Session {
         stages.timed(paths, start.elapsed().as_secs_f64());
         let left = match outcome {
             Ok(left) => left,
-            Err(error) => return self.fail(worded(&error)),
+            Err(error) => return self.fail(error.told()),
         };
         let taken = stages.renderer().taken();
         // The first picture of a size is shown at once, later ones now and then.
@@ -366,7 +366,7 @@ impl Session {
             && let Some(stages) = &mut self.stages
             && let Err(error) = stages.refine()
         {
-            self.fail(worded(&error));
+            self.fail(error.told());
         }
         self.follow();
     }
@@ -442,13 +442,5 @@ impl Session {
         };
         // Whoever has asked may have gone.
         let _ = answer.send(value);
-    }
-}
-
-/// What keeps a scene from being rendered; a shader's own message begins with its place.
-fn worded(error: &RenderError) -> String {
-    match error {
-        RenderError::Shader(message) => message.clone(),
-        other => format!("error: {other}"),
     }
 }

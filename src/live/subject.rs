@@ -249,16 +249,13 @@ pub fn base(layer: &Layer, shader: &Shader, name: &str) -> Option<Given> {
     if let Some(param) = layer.params.iter().rev().find(|param| param.name == name) {
         return Given::of_values(&param.values);
     }
-    let variables = &shader.typed.variables;
-    let param = shader.typed.params.iter().find(|param| variables[param.var.0 as usize].name == name)?;
+    let (param, _) = shader.typed.param(name)?;
     Given::of_constants(&constants(param.default.as_ref()?)?)
 }
 
 /// The type of a shader's parameter.
 fn type_of<'s>(shader: &'s Shader, name: &str) -> Option<&'s Type> {
-    let variables = &shader.typed.variables;
-    let mut all = shader.typed.params.iter().map(|param| &variables[param.var.0 as usize]);
-    all.find(|variable| variable.name == name).map(|variable| &variable.ty)
+    shader.typed.param(name).map(|(_, variable)| &variable.ty)
 }
 
 /// The files of shaders' texts, by their keys.

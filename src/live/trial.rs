@@ -44,9 +44,8 @@ impl Trial {
             let written = layer.params.iter().any(|param| param.name == name);
             overrides.get(&knob).cloned().or_else(|| base(layer, &shader, name).filter(|_| written))
         };
-        let names = shader.typed.params.iter().map(|param| &shader.typed.variables[param.var.0 as usize].name);
-        let given: Vec<(String, String)> =
-            names.filter_map(|name| Some((name.to_string(), value(&name.to_string())?.text()))).collect();
+        let given = shader.params().filter_map(|name| Some((name.to_owned(), value(name)?.text())));
+        let given: Vec<(String, String)> = given.collect();
         let (board, running, fed) = (board.clone(), self.running.clone(), !part.spec.connections.is_empty());
         std::thread::spawn(move || {
             put(&board, json!({"state": "running", "shader": shader.name(), "done": 0, "total": 0}));

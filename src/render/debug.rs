@@ -13,15 +13,19 @@ impl Renderer {
     /// Runs the shaders of what the center of a pixel shows, once, and gives what they say, layer by layer; nothing where the pixel
     /// shows nothing. No light is followed on from there.
     pub fn pixel_reports(&self, x: u32, y: u32) -> Vec<Report> {
-        let world = self.world();
-        // One point is soon done, also of a render that was stopped.
-        let host = host(&world.scene.camera, &world.settings, &world.scene.textures, Some(world.accel.clone()));
-        let mut machine = Machine::with_host(Arc::new(host));
         let (material, points) = self.point_of(x, y);
+        let mut machine = self.machine_of_one();
         if let Some(material) = material {
-            machine.shade(&world.scene.materials[material].surface, &points);
+            machine.shade(&self.world().scene.materials[material].surface, &points);
         }
         machine.take_reports()
+    }
+
+    /// A machine for one point, which is soon done, also of a render that was stopped.
+    pub(super) fn machine_of_one(&self) -> Machine {
+        let world = self.world();
+        let host = host(&world.scene.camera, &world.settings, &world.scene.textures, Some(world.accel.clone()));
+        Machine::with_host(Arc::new(host))
     }
 
     /// The material that the center of a pixel shows, that of the background included, and the point that is shaded.

@@ -97,6 +97,16 @@ impl std::error::Error for RenderError {
     }
 }
 
+impl RenderError {
+    /// The message for people: "error:" goes before it, unless it is a shader's own, which begins with its place.
+    pub fn told(&self) -> String {
+        match self {
+            RenderError::Shader(message) => message.clone(),
+            other => format!("error: {other}"),
+        }
+    }
+}
+
 impl SettingsError {
     /// A stable code, for programs.
     pub fn code(&self) -> &'static str {

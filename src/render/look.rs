@@ -3,7 +3,7 @@
 use super::renderer::Renderer;
 use crate::closure::print::tree_text;
 use crate::closure::{Evaluation, LobeInfo, Lobes};
-use crate::exec::{Machine, Report};
+use crate::exec::Report;
 use crate::math::columns::Column3;
 use crate::math::elementary::{atan2, cos, sin};
 use crate::math::frame::Frame;
@@ -42,7 +42,7 @@ impl Renderer {
         let (material, points) = self.point_of(x, y);
         let material = material?;
         let group = &world.scene.materials[material].surface;
-        let mut machine = Machine::with_host(world.host.clone());
+        let mut machine = self.machine_of_one();
         machine.shade(group, &points);
         let (tree, viewer) = (machine.tree(), Column3::splat(-points.i.get(0), 1));
         let mut lobes = Lobes::new(world.settings.closure);

@@ -322,11 +322,7 @@ impl<'c> Builder<'c> {
         if self.values > SCENE_VALUES {
             return Err(SceneError::at(e.place(), SceneProblem::TooManyValues { most: SCENE_VALUES }));
         }
-        let group = self.compiler.compile(&spec).map_err(|error| match *error.problem {
-            // It may be of a value that the scene does not give.
-            SceneProblem::Group(_) => error,
-            _ => error.or_at(&spec.layers[0].place),
-        })?;
+        let group = self.compiler.compile(&spec).map_err(|error| error.or_at(&spec.layers[0].place))?;
         self.scene.warnings.extend(self.compiler.take_warnings());
         self.add_material(e.node.attribute("name"), spec, group);
         Ok(())

@@ -278,7 +278,7 @@ impl ShaderFiles {
             // It is not the scene that says so.
             GroupSubject::Param { layer, name } if self.overrides.gives(&spec.name, layer, name) => {
                 let help = error.help.clone();
-                SceneError::nowhere(SceneProblem::Group(error)).with_help(help)
+                SceneError::nowhere(SceneProblem::Value(error)).with_help(help)
             }
             _ => placed(error, spec),
         })

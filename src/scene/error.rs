@@ -220,6 +220,8 @@ pub enum SceneProblem {
     },
     /// S0607: a parameter or connection that does not fit.
     Group(GroupError),
+    /// S0609: a value for a parameter that does not fit, and does not come from the scene.
+    Value(GroupError),
     /// S0608: what a host's own [`super::GroupCompiler`] says.
     Host(String),
 }
@@ -292,6 +294,7 @@ impl SceneProblem {
             SceneProblem::ShaderNotFound { .. } => "S0605",
             SceneProblem::Shader { .. } => "S0606",
             SceneProblem::Group(_) => "S0607",
+            SceneProblem::Value(_) => "S0609",
             SceneProblem::Host(_) => "S0608",
         }
     }
@@ -344,7 +347,7 @@ impl fmt::Display for SceneProblem {
             }
             SceneProblem::ShaderNotFound { shader } => write!(f, "shader `{shader}` is not found"),
             SceneProblem::Shader { shader, error } => write!(f, "shader `{shader}` does not compile\n{error}"),
-            SceneProblem::Group(error) => error.problem.fmt(f),
+            SceneProblem::Group(error) | SceneProblem::Value(error) => error.problem.fmt(f),
             SceneProblem::Host(message) => f.write_str(message),
         }
     }
@@ -380,9 +383,11 @@ impl SceneError {
         self
     }
 
-    /// The same error, at `place` unless it has one of its own.
+    /// The same error, at `place` unless it has one of its own, or is about nothing that a scene says.
     pub fn or_at(mut self, place: &Place) -> Self {
-        self.place.get_or_insert_with(|| place.clone());
+        if !matches!(*self.problem, SceneProblem::Value(_)) {
+            self.place.get_or_insert_with(|| place.clone());
+        }
         self
     }
 }
@@ -408,7 +413,7 @@ impl std::error::Error for SceneError {
         match &*self.problem {
             SceneProblem::Unreadable { error, .. } => Some(error.as_ref()),
             SceneProblem::Shader { error, .. } => Some(error.as_ref()),
-            SceneProblem::Group(error) => Some(error),
+            SceneProblem::Group(error) | SceneProblem::Value(error) => Some(error),
             SceneProblem::Camera(flaw) => Some(flaw),
             _ => None,
         }

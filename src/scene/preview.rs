@@ -91,14 +91,10 @@ fn shown_output(shader: &Shader) -> Option<(&str, &'static str)> {
     if shader.group().build().is_ok_and(|group| group.closures().next().is_some()) {
         return None;
     }
-    let variables = &shader.typed.variables;
-    let outputs = || {
-        let outputs = shader.typed.params.iter().filter(|param| param.output);
-        outputs.map(|param| &variables[param.var.0 as usize])
-    };
     let first = |fits: fn(Base) -> bool| {
         let single = |ty: &Type| ty.length == Length::Single && ty.base().is_some_and(fits);
-        outputs().find(|variable| single(&variable.ty)).map(|variable| variable.name.as_str())
+        let mut outputs = shader.typed.declared().filter(|(param, _)| param.output);
+        outputs.find(|(_, variable)| single(&variable.ty)).map(|(_, variable)| variable.name.as_str())
     };
     let closure = first(|base| base == Base::Closure).map(|name| (name, "bsdf"));
     let color = || first(|base| base == Base::Color).map(|name| (name, "Cs"));

@@ -61,8 +61,7 @@ fn list_layers(options: &Options, spec: &GroupSpec, files: &ShaderFiles) -> Resu
         for layer in &spec.layers {
             say(&format!("    {}\n", layer.layer_name));
             let shader = files.shader_of(spec, layer).map_err(|error| Failure::Wrong(error.to_string()))?;
-            for param in shader.typed.params.iter().filter(|_| options.query) {
-                let variable = &shader.typed.variables[param.var.0 as usize];
+            for (param, variable) in shader.typed.declared().filter(|_| options.query) {
                 let output = if param.output { "output " } else { "" };
                 say(&format!("\t{output}{} {}\n", variable.ty, variable.name));
             }

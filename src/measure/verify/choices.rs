@@ -24,9 +24,7 @@ pub(super) struct Setting {
 
 /// Splits what the user gave for a parameter into values.
 pub(super) fn setting(shader: &Shader, name: &str, text: &str) -> Setting {
-    let variables = &shader.typed.variables;
-    let mut types = shader.typed.params.iter().map(|p| &variables[p.var.0 as usize]);
-    let each = types.find(|v| v.name == name).and_then(|v| components(&v.ty));
+    let each = shader.typed.param(name).and_then(|(_, variable)| components(&variable.ty));
     let parts: Vec<&str> = text.split(',').collect();
     let values = match each {
         Some(each) if parts.len().is_multiple_of(each) => parts.chunks(each).map(|value| value.join(",")).collect(),
@@ -48,10 +46,8 @@ fn components(ty: &Type) -> Option<usize> {
 
 /// The float parameters whose metadata tells their range, with its ends.
 fn ranged(shader: &Shader) -> Vec<(String, [f32; 2])> {
-    let typed = &shader.typed;
     let mut out = Vec::new();
-    for param in typed.params.iter().filter(|param| !param.output) {
-        let variable = &typed.variables[param.var.0 as usize];
+    for (param, variable) in shader.typed.declared().filter(|(param, _)| !param.output) {
         let of = |name: &str| param.metadata.iter().find(|entry| entry.name == name).and_then(value);
         let range = RANGES.iter().find_map(|(low, high)| Some([of(low)?, of(high)?]));
         if let Some([low, high]) = range.filter(|[low, high]| variable.ty == Type::FLOAT && low < high) {
@@ -75,8 +71,7 @@ pub(super) fn surveyed(shader: &Shader, steps: usize) -> Vec<Setting> {
     let compared = Compared::of(typed);
     let ranged = ranged(shader);
     let mut out = Vec::new();
-    for param in typed.params.iter().filter(|param| !param.output) {
-        let variable = &typed.variables[param.var.0 as usize];
+    for (param, variable) in typed.declared().filter(|(param, _)| !param.output) {
         let values = match ranged.iter().find(|(name, _)| *name == variable.name) {
             // The inverse of the golden ratio fills any number of steps evenly.
             Some((_, [low, high])) => {
