@@ -43,7 +43,7 @@ pub(super) struct Frame {
     pub align: Option<(usize, usize)>,
     /// The next token begins a statement, or an element of a list.
     pub fresh: bool,
-    /// The indentation of the line on which that began, and whether it was the first of its line.
+    /// The indentation of the line on which that began.
     pub start: usize,
     /// Whether it was the first of its line.
     pub first: bool,
