@@ -88,6 +88,26 @@ fn a_shader_alone_is_shown_on_a_ball_and_a_cloth() {
 }
 
 #[test]
+fn shaders_beside_the_one_that_is_shown_do_not_change_the_scene() {
+    let folder = folder();
+    let folder = folder.path();
+    let picture = || {
+        let (code, error) = run(folder, &[&["render", "red.osl", "-o", "p.png"], &SMALL[..], &["2"]].concat());
+        assert_eq!(code, 0, "{error}");
+        std::fs::read(folder.join("p.png")).unwrap()
+    };
+    let alone = picture();
+    // By the names of what the built-in scene is made of: one is wrong, one is another, one is called so within its file.
+    std::fs::write(folder.join("form.osl"), "displacement form( {").unwrap();
+    std::fs::write(folder.join("matte.osl"), "surface matte() { Ci = emission(); }").unwrap();
+    std::fs::write(folder.join("mine.osl"), "surface emitter() { Ci = 0; }").unwrap();
+    assert!(alone == picture());
+    // The control: shown by its own name, it is that of the file.
+    let at = color(folder, &[&["matte.osl"], &SMALL[..], &["4"]].concat(), BALL);
+    assert!(at.iter().all(|channel| *channel > 0.9), "{at:?}");
+}
+
+#[test]
 fn what_is_wrong_with_a_shader_alone_is_said_of_it() {
     let folder = folder();
     let say = |arguments: &[&str]| {

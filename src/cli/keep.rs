@@ -188,14 +188,14 @@ impl Keeping<'_> {
         let failed = |message| Failure::Usage(format!("error: {message}{}", self.rescue(renderer)));
         let is_part = self.is_exr() && (self.parts || !done);
         let part = (is_part || !done).then(|| renderer.part());
+        let picture = part.as_ref().map_or_else(|| renderer.picture(), Part::picture);
         if let (Some(part), Some(file)) = (part.as_ref().filter(|_| !done), beside) {
             // The samples first: a picture of them can be made at any time.
-            part::write(part, file).map_err(failed)?;
+            part::write_into(part, &picture, file, None).map_err(failed)?;
         }
         let written = match &part {
-            Some(part) if is_part => part::write_into(part, self.output, room),
-            Some(part) => output::write_into(&part.picture(), self.output, &self.screen, room),
-            None => output::write_into(&renderer.picture(), self.output, &self.screen, room),
+            Some(part) if is_part => part::write_into(part, &picture, self.output, room),
+            _ => output::write_into(&picture, self.output, &self.screen, room),
         };
         written.map_err(failed)?;
         // A part that was written on the way, or gone on from, has done its work; one that another render has left is that one's.

@@ -14,6 +14,9 @@ use std::ops::Range;
 /// Red, green, blue, alpha and weight.
 pub const PARTS: usize = 5;
 
+/// Which of them is alpha.
+pub const ALPHA: usize = 3;
+
 /// Powers of two between the grids of two tiers.
 const STEP: i32 = 30;
 
@@ -133,13 +136,17 @@ impl Sums {
 
     /// One sum as numbers: a function of its exact value alone.
     pub fn value(&self, i: usize) -> [f64; PARTS] {
-        if let [only] = &self.tiers[..] {
-            let sum = only.sums[i];
-            if sum.iter().all(|sum| sum.unsigned_abs() < 1 << 53) {
-                return sum.map(|sum| sum as f64 * power(-FRACTION));
-            }
-        }
-        std::array::from_fn(|part| self.value_of(i, part))
+        std::array::from_fn(|part| match self.plain(i, part) {
+            Some(sum) if sum.unsigned_abs() < 1 << 53 => sum as f64 * power(-FRACTION),
+            _ => self.value_of(i, part),
+        })
+    }
+
+    /// What a sum has in tier 0, where it has nothing elsewhere, as nearly all have.
+    #[inline]
+    fn plain(&self, i: usize, part: usize) -> Option<i64> {
+        let [zeroth, others @ ..] = &self.tiers[..] else { return None };
+        others.iter().all(|tier| tier.sums[i][part] == 0).then(|| zeroth.sums[i][part])
     }
 
     /// Sums of `len` in the tiers of `numbers`, with more for each piece of `piece` of them: `fill` is told the number of the tier and of
@@ -182,6 +189,17 @@ impl Sums {
     #[inline]
     pub fn settled(&self, i: usize, mut each: impl FnMut(i32, usize, i64)) {
         for part in 0..PARTS {
+            if let Some(mut sum) = self.plain(i, part) {
+                let mut number = 0;
+                while sum != 0 {
+                    let above = carry(&mut sum);
+                    if sum != 0 {
+                        each(number, part, sum);
+                    }
+                    (sum, number) = (above, number + 1);
+                }
+                continue;
+            }
             let (digits, places) = self.digits(i, part);
             for place in places {
                 if digits[place] != 0 {

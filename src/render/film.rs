@@ -11,14 +11,11 @@
 //! Decision (2026-11-29): a tile's sums (13 kB at 16 x 16 pixels) are kept together, because they stay in the nearest cache, where
 //! sums kept apart by source pixel did not.
 
-use super::exact::{self, PARTS, Sums};
+use super::exact::{self, ALPHA, PARTS, Sums};
 use super::settings::{HALVES, Settings};
 use super::tile::Tile;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-
-/// Which part of a sum is alpha.
-const ALPHA: usize = 3;
 
 /// What a tile has gathered in each half: sums over its pixels and a rim of one.
 #[derive(Clone, Debug, Default)]

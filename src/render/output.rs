@@ -65,8 +65,9 @@ fn most_bytes(format: Format, settings: &Settings, part: bool) -> u64 {
     let header = 1 << 16;
     header
         + match format {
-            // What does not become smaller is kept as it is. A line has an entry in a table and a head.
-            Format::Exr if part => 4 * pixels * (channels + PART_WORDS) + 40 * lines,
+            // What does not become smaller is kept as it is. A line has an entry in a table and a head. The sums of a channel, and the weight,
+            // are numbers in two tiers, as whatever has more than a few samples has.
+            Format::Exr if part => 4 * pixels * (channels + 2 * (channels + 1)) + 40 * lines,
             Format::Exr => 4 * pixels * channels + 20 * lines,
             // What does not become smaller grows by a few bytes a block of 32 kB.
             Format::Png => pixels * channels * 1001 / 1000 + lines,
@@ -74,9 +75,6 @@ fn most_bytes(format: Format, settings: &Settings, part: bool) -> u64 {
             Format::Hdr => 4 * pixels * 129 / 128 + 4 * lines,
         }
 }
-
-/// Words that the sums of a pixel take: five numbers in two tiers, as whatever has more than a few samples has.
-const PART_WORDS: u64 = 10;
 
 /// Writes what `encode` makes to `path`.
 pub(super) fn write_with(

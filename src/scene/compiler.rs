@@ -31,6 +31,9 @@ pub struct ShaderFiles {
     declared: Mutex<HashMap<PathBuf, Declared>>,
 }
 
+/// What goes before the name of a shader that must be the binary's own.
+const BINARY: &str = "velour:";
+
 /// Names of shaders and the file of each.
 type Declared = Arc<HashMap<String, PathBuf>>;
 
@@ -105,15 +108,23 @@ impl ShaderFiles {
         }
     }
 
-    /// The shader of a name: in memory, in a file, or in the binary; `None` when there is none.
+    /// The shader of a name: in memory, in a file, or in the binary, or there alone for `velour:NAME`; `None` when there is none.
     pub(super) fn named(&self, name: &str, search: &[PathBuf]) -> Option<Result<Shader, CompileError>> {
+        let of_binary = |name| {
+            shipped(name).map(|(file, text)| {
+                self.once(Path::new(&format!("{BINARY}{file}")), || self.compiler.compile(file, text))
+            })
+        };
+        if let Some(name) = name.strip_prefix(BINARY) {
+            return of_binary(name);
+        }
         if let Some(shader) = self.memory.get(name) {
             return Some(Ok(shader.clone()));
         }
         if let Some(path) = self.find(name, search) {
             return Some(self.once(&path, || self.compiler.compile_file(&path)));
         }
-        shipped(name).map(|(file, text)| self.once(Path::new(file), || self.compiler.compile(file, text)))
+        of_binary(name)
     }
 
     /// What helps when a shader is not found.

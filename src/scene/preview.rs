@@ -73,14 +73,14 @@ pub fn names_shader(argument: &str) -> bool {
 /// The scene's text with the shader in it.
 fn scene_text(name: &str, shader: &Shader) -> String {
     let layer = format!(r#"<Shader name="{}" layer="{PREVIEW_LAYER}"/>"#, escaped(name));
-    let matte = r#"<Shader name="matte" layer="matte"/>"#;
+    let matte = r#"<Shader name="velour:matte" layer="matte"/>"#;
     if shader.typed.kind == ShaderKind::Displacement {
         return SCENE.replace("@surface@", matte).replace("@displacement@", &layer);
     }
     let surface = match shown_output(shader) {
         None => layer,
         Some((output, input)) => format!(
-            r#"{layer}<Shader name="shown" layer="shown"/><ConnectShaders srclayer="{PREVIEW_LAYER}" srcparam="{output}" dstlayer="shown" dstparam="{input}"/>"#
+            r#"{layer}<Shader name="velour:shown" layer="shown"/><ConnectShaders srclayer="{PREVIEW_LAYER}" srcparam="{output}" dstlayer="shown" dstparam="{input}"/>"#
         ),
     };
     SCENE.replace("@surface@", &surface).replace("@displacement@", "")

@@ -1,7 +1,10 @@
 //! Sums as columns of words, as a file keeps them.
 
-use super::super::exact::{PARTS, Sums, Tier, is_tier, last_tier};
+use super::super::exact::{ALPHA, PARTS, Sums, Tier, is_tier, last_tier};
 use rayon::prelude::*;
+
+/// Which part of a sum is the weight.
+const WEIGHT: usize = PARTS - 1;
 
 /// Pixels that a thread takes at a time.
 const PIECE: usize = 1 << 14;
@@ -17,8 +20,8 @@ pub struct Column {
 }
 
 /// The columns of sums that are not all zero, and that of the weights, without which nothing is known; the same for sums of the same
-/// values.
-pub fn columns(sums: &Sums) -> Vec<Column> {
+/// values. Those of alpha only if somebody asks.
+pub fn columns(sums: &Sums, alpha: bool) -> Vec<Column> {
     let tiers = sums.settled_tiers();
     let count = tiers.len() * PARTS;
     let words = |tier: i32| if tier == last_tier() { 2 } else { 1 };
@@ -41,7 +44,11 @@ pub fn columns(sums: &Sums) -> Vec<Column> {
             });
         }
     });
-    columns.retain(|column| column.of == (0, PARTS - 1, false) || column.words.par_iter().any(|word| *word != 0));
+    columns.retain(|column| match column.of.1 {
+        ALPHA if !alpha => false,
+        WEIGHT if column.of == (0, WEIGHT, false) => true,
+        _ => column.words.par_iter().any(|word| *word != 0),
+    });
     columns.sort_by_key(|column| column.of);
     columns
 }

@@ -35,16 +35,15 @@ const PLACES: [&str; 2] = ["low", "high"];
 /// # Errors
 /// The file cannot be written.
 pub fn write(part: &Part, path: &Path) -> Result<(), OutputError> {
-    write_into(part, path, None)
+    write_into(part, &part.picture(), path, None)
 }
 
-/// The same, into room that is held for it.
+/// The same, with a picture that has been made of it already, into room that is held for it.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_into(part: &Part, path: &Path, room: Option<Room>) -> Result<(), OutputError> {
-    let image = part.picture();
-    output::write_with(path, room, |sink| encode(part, &image, sink))
+pub fn write_into(part: &Part, picture: &Image, path: &Path, room: Option<Room>) -> Result<(), OutputError> {
+    output::write_with(path, room, |sink| encode(part, picture, sink))
 }
 
 fn encode(part: &Part, image: &Image, sink: &mut (impl std::io::Write + std::io::Seek)) -> Result<(), String> {
@@ -56,7 +55,7 @@ fn encode(part: &Part, image: &Image, sink: &mut (impl std::io::Write + std::io:
     });
     let picture = output::layer_attributes(image, "picture");
     let picture = exr::Layer::new(size, picture, output::ENCODING, exr::AnyChannels::sort(channels.collect()));
-    let columns = columns(part.sums());
+    let columns = columns(part.sums(), part.of.alpha);
     let attributes = exr::LayerAttributes {
         comments: Some(output::text(&description(part, checked(&columns)))),
         ..exr::LayerAttributes::named(LAYER)
