@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::speak::tell;
 use crate::files::Room;
+use crate::live::Tev;
 use crate::render::part::{self, Part};
 use crate::render::{Progress, Renderer, Screen, output};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -44,6 +45,10 @@ impl Signals {
 /// Samples of each pixel from one round to the next: as many as fill a wave. A render that is stopped has whole rounds of all pixels, and
 /// of some pixels one more.
 const SAMPLES_A_ROUND: u32 = 32;
+
+/// When a viewer sees something first, and how often then; seldomer where a picture takes long to make.
+const FIRST_SHOWN: Duration = Duration::from_millis(200);
+const SHOWN_EVERY: Duration = Duration::from_millis(500);
 
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;
@@ -114,6 +119,8 @@ pub struct Keeping<'a> {
     pub resumed: Option<&'a Path>,
     /// How a PNG shows light.
     pub screen: Screen,
+    /// A viewer that sees the picture grow.
+    pub tev: Option<&'a Tev>,
 }
 
 impl Keeping<'_> {
@@ -145,7 +152,8 @@ impl Keeping<'_> {
         // Above this the clock has no number.
         let every = self.every.filter(|_| self.part_file().is_some()).map(|s| Duration::from_secs_f64(s.min(1e9)));
         let due = || every.map(|every| Instant::now() + every);
-        let mut watch = Watch { bar, due: due(), share: [0.0, 1.0] };
+        let (mut part_due, mut shown_due) = (due(), self.tev.map(|_| Instant::now() + FIRST_SHOWN));
+        let mut watch = Watch { bar, due: None, share: [0.0, 1.0] };
         let (mut kept, mut missed) = (false, Missed::default());
         // Rounds of a render that stops by itself are its own.
         let settings = renderer.settings();
@@ -156,13 +164,19 @@ impl Keeping<'_> {
                 let before = f64::from(renderer.taken()[0]) / wanted;
                 watch.share = [before.min(1.0), f64::from(most) / wanted];
             }
+            watch.due = part_due.into_iter().chain(shown_due).min();
             let left = renderer.round_of(most, &watch).map_err(Failure::of_render)?;
             if !left || signals.asked().is_some() {
                 break !left;
             }
-            if watch.due.is_some_and(|due| Instant::now() >= due) {
+            let now = Instant::now();
+            if part_due.is_some_and(|due| now >= due) {
                 kept |= self.checkpoint(&renderer.part(), &mut missed);
-                watch.due = due();
+                part_due = due();
+            }
+            if let Some(tev) = self.tev.filter(|_| shown_due.is_some_and(|due| now >= due)) {
+                tev.show(renderer.picture());
+                shown_due = Some(Instant::now() + SHOWN_EVERY.max(10 * now.elapsed()));
             }
         };
         watch.bar.finish_and_clear();
@@ -189,6 +203,9 @@ impl Keeping<'_> {
         let is_part = self.is_exr() && (self.parts || !done);
         let part = (is_part || !done).then(|| renderer.part());
         let picture = part.as_ref().map_or_else(|| renderer.picture(), Part::picture);
+        if let Some(tev) = self.tev {
+            tev.show(picture.clone());
+        }
         if let (Some(part), Some(file)) = (part.as_ref().filter(|_| !done), beside) {
             // The samples first: a picture of them can be made at any time.
             part::write_into(part, &picture, file, None).map_err(failed)?;

@@ -5,7 +5,8 @@ use super::failure::Failure;
 use super::keep::Signals;
 use super::speak::say;
 use super::threads::capped;
-use crate::live::{Live, Source};
+use super::viewer::viewer;
+use crate::live::{Live, Showing, Source};
 use crate::render::{Screen, Settings, View};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -33,6 +34,9 @@ pub struct LiveArgs {
     /// How light becomes the colors of a screen, until the page says otherwise: soft, srgb, agx or linear
     #[arg(long, default_value = "soft")]
     view: View,
+    /// Also show the picture in tev, which listens at 127.0.0.1:14158 unless told otherwise
+    #[arg(long, value_name = "HOST[:PORT]")]
+    tev: Option<String>,
     /// Threads; 0 for one a core, and at most four for each
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
@@ -71,7 +75,8 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
     };
     let signals = Signals::listen(&Arc::new(AtomicBool::new(false)))?;
     let screen = Screen { view: args.view, ..Screen::default() };
-    let live = Live::start(source, &settings, (resolution, screen), args.port)
+    let tev = viewer(args.tev.as_deref(), &args.file)?;
+    let live = Live::start(source, &settings, Showing { resolution, screen, port: args.port, tev })
         .map_err(|error| Failure::Usage(format!("error: {error}")))?;
     say(&format!("http://{}/ shows {}; Ctrl-C ends it\n", live.address(), args.file));
     loop {

@@ -26,6 +26,7 @@ mod subject;
 mod threads;
 mod tree;
 mod verify;
+mod viewer;
 mod watch;
 
 pub use command::run;

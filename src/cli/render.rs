@@ -10,12 +10,14 @@ use super::sheet::{Sheet, Sweep};
 use super::speak::{leave_output, say, tell};
 use super::subject::Subject;
 use super::threads::capped;
+use super::viewer::{farewell, viewer};
 use super::watch::TimeBound;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
 use crate::exec::{Report, ReportKind};
 use crate::files::Room;
 use crate::limits::{PRINTED, PRINTED_BYTES};
+use crate::live::Tev;
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::part::Ranges;
 use crate::render::{
@@ -50,6 +52,9 @@ pub struct RenderArgs {
     #[arg(long, num_args = 2, value_names = ["NAME", "FROM:TO:N"], allow_hyphen_values = true, action = clap::ArgAction::Append,
           conflicts_with_all = ["samples", "share", "resume", "time", "debug_pixel", "crop"])]
     sweep: Vec<String>,
+    /// Also show the picture in tev while it grows; tev listens at 127.0.0.1:14158 unless told otherwise
+    #[arg(long, value_name = "HOST[:PORT]")]
+    tev: Option<String>,
     #[command(flatten)]
     screen: ScreenArgs,
     /// Print what shaders say at this pixel, layer by layer, and render nothing
@@ -206,6 +211,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if output::is_standard_output(path) {
         leave_output();
     }
+    let tev = viewer(args.tev.as_deref(), &path.to_string_lossy())?;
     let loading = TimeBound::new(start, args.time, "while the scene was made ready");
     settings(args).check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     args.testrender.note();
@@ -237,18 +243,20 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         return debug_pixel(&renderer, pixel);
     }
     if !sheet.sweeps.is_empty() {
-        return render_sheet(args, &sheet, (renderer, &scene, &mut shaders), path, start);
+        return render_sheet(args, &sheet, (renderer, &scene, &mut shaders), path, (start, tev));
     }
     go_on(args, &mut renderer)?;
     let every = Some(args.checkpoint).filter(|seconds| *seconds > 0.0);
     let screen = args.screen.screen();
-    let keeping = Keeping { output: path, every, parts: args.leaves_part(), resumed: args.resume.as_deref(), screen };
+    let (parts, resumed) = (args.leaves_part(), args.resume.as_deref());
+    let keeping = Keeping { output: path, every, parts, resumed, screen, tev: tev.as_ref() };
     let room = if args.no_hold { None } else { Some(hold(path, &renderer, args.leaves_part())?) };
     let signals = Signals::listen(renderer.stop())?;
     let outcome = keeping.render(&mut renderer, &signals)?;
     let about = renderer.about();
     pass_on(&about.reports);
     keeping.write(&renderer, outcome, room)?;
+    farewell(tev);
     if let Some(status) = signals.asked().filter(|_| !outcome.done) {
         return Err(Failure::Stopped(status));
     }
@@ -275,12 +283,14 @@ fn render_sheet(
     sheet: &Sheet,
     (renderer, scene, shaders): (Renderer, &Scene, &mut ShaderFiles),
     path: &Path,
-    start: Instant,
+    (start, tev): (Instant, Option<Tev>),
 ) -> Result<(), Failure> {
     let signals = Signals::listen(renderer.stop())?;
     let image = sheet.render(renderer, scene, shaders, &signals)?;
     pass_on(&image.about.reports);
     output::write_as(&image, path, &args.screen.screen()).map_err(|error| Failure::Usage(format!("error: {error}")))?;
+    tev.iter().for_each(|tev| tev.show(image.clone()));
+    farewell(tev);
     if let Some(status) = signals.asked() {
         tell(&format!("stopped: {} holds the cells that were done\n", path.display()));
         return Err(Failure::Stopped(status));

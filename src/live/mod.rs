@@ -27,11 +27,13 @@ mod session;
 mod source;
 mod stages;
 mod subject;
+mod tev;
 mod trial;
 mod values;
 mod watch;
 
 pub use source::Source;
+pub use tev::{TEV_PORT, Tev};
 
 use crate::render::{Screen, Settings};
 use board::Board;
@@ -53,6 +55,19 @@ pub struct Live {
     server: Arc<Server>,
     inbox: Arc<Inbox>,
     board: Arc<Board>,
+}
+
+/// How a session is shown.
+#[derive(Debug, Default)]
+pub struct Showing {
+    /// Width and height, which go before what the scene states.
+    pub resolution: Option<[u32; 2]>,
+    /// How light becomes colors, until the page says otherwise.
+    pub screen: Screen,
+    /// The port of the page; [`PORT`], or any if that is taken, where there is none.
+    pub port: Option<u16>,
+    /// A viewer that gets the whole pictures besides.
+    pub tev: Option<Tev>,
 }
 
 /// Why there is no page.
@@ -98,25 +113,19 @@ impl fmt::Debug for Live {
 }
 
 impl Live {
-    /// Begins to render `source`, and serves its page on 127.0.0.1 alone. Without a port it takes [`PORT`], or any if that is taken. A
-    /// `resolution`, width and height, goes before what the scene states; the picture is shown by `screen` until the page says otherwise.
+    /// Begins to render `source`, and serves its page on 127.0.0.1 alone.
     ///
     /// # Errors
     /// The port is taken, or files cannot be watched. What is wrong with the source is shown on the page.
-    pub fn start(
-        source: Source,
-        settings: &Settings,
-        (resolution, screen): (Option<[u32; 2]>, Screen),
-        port: Option<u16>,
-    ) -> Result<Live, LiveError> {
+    pub fn start(source: Source, settings: &Settings, showing: Showing) -> Result<Live, LiveError> {
         settings.check().map_err(LiveError::Settings)?;
         let (inbox, board): (Arc<Inbox>, Arc<Board>) = (Arc::default(), Arc::default());
         let watched = Watched::new(inbox.clone()).map_err(|error| LiveError::Watch(error.to_string()))?;
+        let port = showing.port;
         let server = Arc::new(bound(port)?);
         let nowhere = || LiveError::Port { port: port.unwrap_or(PORT), reason: "it has no address".to_owned() };
         let address = server.server_addr().to_ip().ok_or_else(nowhere)?;
-        let session =
-            Session::new(source, settings.clone(), (resolution, screen), (inbox.clone(), board.clone(), watched));
+        let session = Session::new(source, settings.clone(), showing, (inbox.clone(), board.clone(), watched));
         std::thread::spawn(move || session.run());
         let desk = Desk { board: board.clone(), inbox: inbox.clone(), port: address.port() };
         let served = server.clone();

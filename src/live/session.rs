@@ -1,5 +1,6 @@
 //! The session: one thread that sees to wishes, and renders in between.
 
+use super::Showing;
 use super::board::Board;
 use super::controls::{controls, label};
 use super::frame::Frame;
@@ -8,6 +9,7 @@ use super::pixel::{DIRECTIONS, pixel};
 use super::source::Source;
 use super::stages::Stages;
 use super::subject::{Overrides, Subject};
+use super::tev::Tev;
 use super::trial::Trial;
 use super::values::Given;
 use super::watch::Watched;
@@ -59,6 +61,7 @@ pub struct Session {
     stages: Option<Stages>,
     overrides: Overrides,
     screen: Screen,
+    tev: Option<Tev>,
     image: Option<Image>,
     work: Work,
     /// Groups whose text or values have changed and that do not compile yet.
@@ -90,18 +93,17 @@ impl Progress for Interrupt<'_> {
 }
 
 impl Session {
-    /// A session that has loaded nothing yet. `resolution` goes before what the scene states; `screen` is how
-    /// it is shown until the page says otherwise.
+    /// A session that has loaded nothing yet.
     pub fn new(
         source: Source,
         settings: Settings,
-        (resolution, screen): (Option<[u32; 2]>, Screen),
+        showing: Showing,
         (inbox, board, watched): (Arc<Inbox>, Arc<Board>, Watched),
     ) -> Self {
         Session {
             source,
             settings,
-            resolution,
+            resolution: showing.resolution,
             inbox,
             board,
             watched,
@@ -109,7 +111,8 @@ impl Session {
             subject: None,
             stages: None,
             overrides: Overrides::new(),
-            screen,
+            screen: showing.screen,
+            tev: showing.tev,
             image: None,
             work: Work::None,
             dirty: BTreeSet::new(),
@@ -137,7 +140,8 @@ impl Session {
             if !self.see_to(wishes, since) {
                 return;
             }
-            let idle = matches!(self.work, Work::None) || !(self.since.is_some() || self.board.watched());
+            let idle = matches!(self.work, Work::None)
+                || !(self.since.is_some() || self.board.watched() || self.tev.is_some());
             if idle {
                 // Whoever comes to see rings, and may do so a moment too early.
                 let unseen = !matches!(self.work, Work::None);
@@ -378,6 +382,9 @@ impl Session {
         }
         self.shown = Instant::now();
         let frame = Frame::of(&image, self.screen);
+        if let Some(tev) = self.tev.as_ref().filter(|_| !coarse) {
+            tev.show(image.clone());
+        }
         let size = self.stages.as_ref().map_or([image.width, image.height], Stages::size);
         let about = &image.about;
         let picture = json!({
@@ -403,7 +410,8 @@ impl Session {
         let remarks = self.subject.iter().map(|subject| subject.remarks.clone()).filter(|text| !text.is_empty());
         let reports = self.image.iter().flat_map(|image| &image.about.reports).map(Report::to_string);
         let (mut bytes, mut notes) = (0, Vec::new());
-        for note in remarks.chain(scene).chain(reports).take(PRINTED) {
+        let viewer = self.tev.iter().filter_map(Tev::trouble);
+        for note in viewer.chain(remarks).chain(scene).chain(reports).take(PRINTED) {
             bytes += note.len();
             if bytes > PRINTED_BYTES / 16 {
                 break;
