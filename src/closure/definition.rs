@@ -58,6 +58,12 @@ impl ClosureDef {
         &self.spec
     }
 
+    /// The same closure with its formula, in lines of plain text, and where that is from: author, year, equation.
+    pub fn formula(mut self, formula: &'static str, source: &'static str) -> Self {
+        (self.spec.formula, self.spec.source) = (formula, source);
+        self
+    }
+
     /// The same closure without some promises.
     pub fn without(mut self, waivers: &'static [Waiver]) -> Self {
         self.spec.waivers = waivers;

@@ -132,6 +132,10 @@ pub struct ClosureSpec {
     pub keywords: Vec<ParamSpec>,
     /// One line of documentation.
     pub doc: &'static str,
+    /// What it is, in lines of plain text; empty where nobody has said it.
+    pub formula: &'static str,
+    /// Where that is from: author, year, equation.
+    pub source: &'static str,
     /// The promises it does not make.
     pub waivers: &'static [Waiver],
     /// True when its albedo is 1 for white parameters: it loses nothing.
@@ -156,6 +160,8 @@ impl ClosureSpec {
             params,
             keywords,
             doc,
+            formula: "",
+            source: "",
             waivers: &[],
             lossless: false,
             emits: false,

@@ -8,6 +8,12 @@ use velour_grammar::print::print_type;
 /// A whole declaration: signature, documentation, parameters, and what is not promised. One line each, indented by four.
 pub fn closure_text(spec: &ClosureSpec) -> String {
     let mut out = format!("closure color {}\n    {}\n", closure_head(spec), spec.doc);
+    if !spec.formula.is_empty() {
+        out += &format!("    formula:\n        {}\n", spec.formula.replace('\n', "\n        "));
+    }
+    if !spec.source.is_empty() {
+        out += &format!("    source: {}\n", spec.source);
+    }
     for (list, title) in [(&spec.params, "parameters"), (&spec.keywords, "keyword parameters")] {
         if !list.is_empty() {
             out += &format!("    {title}:\n");
@@ -17,6 +23,29 @@ pub fn closure_text(spec: &ClosureSpec) -> String {
         }
     }
     out + &promises(spec)
+}
+
+/// The same as Markdown.
+pub fn closure_markdown(spec: &ClosureSpec) -> String {
+    let mut out = format!("```osl\nclosure color {}\n```\n\n{}\n", closure_head(spec), spec.doc);
+    if !spec.formula.is_empty() {
+        out += &format!("\n```text\n{}\n```\n", spec.formula);
+    }
+    if !spec.source.is_empty() {
+        out += &format!("\nSource: {}\n", spec.source);
+    }
+    for (list, title) in [(&spec.params, ""), (&spec.keywords, "\nKeywords:\n")] {
+        let mut lines =
+            list.iter().map(|param| format!("- `{}` ({}): {}\n", param.name, kind_name(param.kind), param.doc));
+        if let Some(first) = lines.next() {
+            out += &format!("{title}\n{first}");
+        }
+        out.extend(lines);
+    }
+    for promise in promises(spec).lines() {
+        out += &format!("\nIt {}\n", promise.trim_start());
+    }
+    out
 }
 
 /// Name and parameters, as `name(type param, ["keyword", type])`.

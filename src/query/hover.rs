@@ -4,7 +4,7 @@ use super::study::{Found, Study, Symbol};
 use crate::check::notes::Meaning;
 use crate::check::typed::VarId;
 use crate::lang::builtins;
-use crate::lang::describe::{closure_text, signature_text};
+use crate::lang::describe::{closure_markdown, signature_text};
 use crate::lang::sentences::sentence;
 use velour_grammar::ast::{ExprKind, Item, Metadata};
 use velour_grammar::places::{MAIN_FILE, TextRange};
@@ -58,8 +58,8 @@ impl Study {
             Meaning::Closure(id) => {
                 let name = self.compiler.closures.table().get(id).name;
                 let texts: Vec<String> =
-                    self.compiler.closures.named(name).map(|(_, spec)| closure_markdown(&closure_text(spec))).collect();
-                Some(texts.join("\n\n"))
+                    self.compiler.closures.named(name).map(|(_, spec)| closure_markdown(spec)).collect();
+                Some(texts.join("\n"))
             }
             Meaning::Struct(number) => {
                 let structure = self.notes.structs.get(number as usize)?;
@@ -155,23 +155,6 @@ fn help_of(metadata: &[Metadata]) -> Option<String> {
         ExprKind::String(text) => Some(text.clone()),
         _ => None,
     }
-}
-
-/// What `velour info` says of a closure: its first line is code, the others are text.
-fn closure_markdown(text: &str) -> String {
-    let (head, rest) = text.split_once('\n').unwrap_or((text, ""));
-    let mut out = code(head);
-    for line in rest.lines() {
-        let trimmed = line.trim_start();
-        out += &match line.len() - trimmed.len() {
-            8 => match trimmed.split_once(": ") {
-                Some((name, doc)) => format!("\n- `{name}`: {doc}"),
-                None => format!("\n- {trimmed}"),
-            },
-            _ => format!("\n\n{trimmed}"),
-        };
-    }
-    out
 }
 
 fn code(text: &str) -> String {

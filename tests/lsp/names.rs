@@ -186,7 +186,13 @@ fn a_word_is_explained() {
         assert_eq!(told(word, nth), wanted, "{word}");
     }
     let sheen = told("sheen", 1);
-    for part in ["closure color sheen(", "- `float roughness`: ", "keyword parameters:", "- `string layering`: "] {
+    for part in [
+        "closure color sheen(",
+        "- `roughness` (float): ",
+        "Keywords:",
+        "- `layering` (string): ",
+        "Source: Estevez and Kulla 2017",
+    ] {
         assert!(sheen.contains(part), "{part}: {sheen}");
     }
     client.change(URI, json!([{ "text": "surface s() { printf(\"%f\", smoothstep(0, 1, u)); }" }]));

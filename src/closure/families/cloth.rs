@@ -15,7 +15,8 @@ use crate::lang::closures::{Claim, ParamSpec, TopAlbedo, Waiver};
 
 const ROUGHNESS: ParamSpec =
     ParamSpec::about("Charlie roughness r, clamped to 0.01..1").tried(&[0.25, 0.01, 0.06, 0.15, 0.5, 1.0]);
-const LAYERING: ParamSpec = ParamSpec::about("how the base is scaled: \"min\" (default), \"view\" or \"kelemen\"");
+const LAYERING: ParamSpec =
+    ParamSpec::about("how the base is scaled: \"min\" (default), \"view\", \"kelemen\" or \"lossless\"");
 const SHADOWING: ParamSpec = ParamSpec::about(
     "shadowing term: \"exact\" (default), \"published\" (fit of the paper), \"ashikhmin\" (real-time visibility) or \"series\" (exact to 4e-6)",
 );

@@ -7,6 +7,7 @@ mod cloth;
 mod coat;
 mod cycles;
 mod diffuse;
+mod formulas;
 mod hair;
 mod highlights;
 mod lights;
@@ -58,5 +59,9 @@ pub(super) fn all() -> Vec<ClosureDef> {
         cloth::sheen_alone(),
     ];
     all.extend(cycles::all());
-    all
+    let told = |def: ClosureDef| match formulas::of(def.spec().name, def.spec().params.len()) {
+        Some((formula, source)) => def.formula(formula, source),
+        None => def,
+    };
+    all.into_iter().map(told).collect()
 }
