@@ -2,11 +2,11 @@
 
 use super::candidate::{Candidate, param_type};
 use super::context::{Checker, Signature, Symbol};
-use super::expr::nearest;
 use super::rank::{better_overload, rank_type, same_storage, score_type};
 use super::typed::{Argument, Expr, ExprKind, FunctionId};
 use crate::lang::builtins::{self, Formal};
 use crate::lang::closures::{ClosureId, ClosureSpec, ParamSpec};
+use crate::lang::nearest::nearest;
 use crate::lang::types::{Length, Type};
 use velour_grammar::ast::{self, Ident};
 use velour_grammar::names::Name;
@@ -48,6 +48,11 @@ impl Checker<'_> {
                 })
                 .collect();
         if values.iter().any(Expr::is_error) {
+            // That there is no such function does not depend on what it is called with.
+            let known = self.foreign.contains(name.name.as_str()) || !self.candidates(&name.name).is_empty();
+            if !known || matches!(self.lookup(&name.name), Some(Symbol::Var(_))) {
+                self.unknown_function(name);
+            }
             return Expr::error(span);
         }
         let candidates = self.candidates(&name.name);
@@ -93,7 +98,7 @@ impl Checker<'_> {
         let mut known: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().map(Name::as_str)).collect();
         builtins::names().for_each(|name| known.push(name));
         self.closures.specs.iter().for_each(|spec| known.push(spec.name));
-        let help = nearest(&name.name, known.into_iter()).map(|near| format!("did you mean `{near}`?"));
+        let help = nearest(&name.name, &known).map(|near| format!("did you mean `{near}`?"));
         self.report(diagnostic.help(help.unwrap_or_else(|| "`velour info` lists functions and closures".to_owned())));
     }
 
@@ -240,7 +245,7 @@ impl Checker<'_> {
         };
         if !known.is_empty() && !known.contains(&name.as_str()) {
             let message = format!("`{function}` has no option \"{name}\"");
-            let help = match nearest(name, known.iter().copied()) {
+            let help = match nearest(name, &known) {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => format!("its options are {}", known.join(", ")),
             };
@@ -256,7 +261,7 @@ impl Checker<'_> {
         if !known.contains(&name) {
             let diagnostic =
                 Diagnostic::warning("W0511", span, format!("`{function}` has no \"{name}\"; it gives 0 and an error"));
-            let help = match nearest(name, known.iter().copied()) {
+            let help = match nearest(name, &known) {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => format!("the kinds of noise are {}", known.join(", ")),
             };
@@ -319,7 +324,7 @@ impl Checker<'_> {
         }
         let names: Vec<&str> = spec.keywords.iter().map(|keyword| keyword.name).collect();
         let message = format!("`{}` has no keyword parameter \"{word}\"; it has no effect", spec.name);
-        let help = match nearest(word, names.iter().copied()) {
+        let help = match nearest(word, &names) {
             Some(near) => format!("did you mean \"{near}\"?"),
             None if names.is_empty() => "it has none".to_owned(),
             None => format!("it has \"{}\"", names.join("\", \"")),

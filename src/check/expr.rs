@@ -4,6 +4,7 @@ use super::context::{Checker, Symbol};
 use super::convert::{assignable, equivalent, is_number};
 use super::notes::Meaning;
 use super::typed::{Expr, ExprKind};
+use crate::lang::nearest::nearest;
 use crate::lang::types::{Base, Length, Type};
 use velour_grammar::ast::{self, ArrayLen, Ident, TypeSpec};
 use velour_grammar::names::Name;
@@ -74,8 +75,8 @@ impl Checker<'_> {
             }
             None => {
                 let diagnostic = Diagnostic::error("E0403", span, format!("`{name}` is not declared"));
-                let names = self.scopes.iter().flat_map(|scope| scope.keys().map(Name::as_str));
-                let help = nearest(name, names).map(|near| format!("did you mean `{near}`?"));
+                let names: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().map(Name::as_str)).collect();
+                let help = nearest(name, &names).map(|near| format!("did you mean `{near}`?"));
                 let help = help.unwrap_or_else(|| format!("declare it, for example `float {name} = 0;`"));
                 self.report(diagnostic.help(help));
                 Expr::error(span)
@@ -290,24 +291,4 @@ pub(super) fn component(ty: &Type, name: &str) -> Option<i32> {
         _ => return None,
     };
     names.iter().position(|n| *n == name).map(|at| at as i32)
-}
-
-/// The name closest to a mistyped one, when it is close enough to be meant.
-pub(super) fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
-    let best = names.map(|candidate| (distance(name, candidate), candidate)).min()?;
-    (best.0 <= 1 + name.len() / 4).then_some(best.1)
-}
-
-/// Levenshtein's edit distance.
-fn distance(a: &str, b: &str) -> usize {
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.bytes().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.bytes().enumerate() {
-            let change = diagonal + (x != y) as usize;
-            diagonal = row[j + 1];
-            row[j + 1] = change.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }

@@ -3,13 +3,14 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::info_file::{shader_json, shader_lines, shader_text};
+use super::source_file::compile;
 use super::speak::say;
-use crate::compile::CompileError;
 use crate::lang::builtins;
 use crate::lang::closures::ClosureTable;
 use crate::lang::describe::{closure_head, closure_text, function_text, signature_text};
+use crate::lang::nearest::nearest;
 use crate::lang::sentences::sentence;
-use crate::scene::{find_shader, nearest};
+use crate::scene::{find_shader, is_shipped_shader};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use velour_grammar::ast::{FunctionDecl, Item};
@@ -48,37 +49,37 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         return Ok(());
     };
     let about_shader = args.verbose || args.terse || args.json || args.param.is_some() || !args.path.is_empty();
-    if let Some(path) = shader_file(args, subject, about_shader, &args.compile.access()?) {
-        return file(args, &path);
+    if subject.ends_with(".osl") || Path::new(subject).is_file() {
+        return file(args, Path::new(subject));
     }
-    let text = one(table, &header, subject);
-    if text.is_empty() {
-        return Err(Failure::Usage(unknown(table, &header, subject)));
+    // A word of the language goes before a shader of that name, unless it is asked as of a shader.
+    let text = if about_shader { String::new() } else { one(table, &header, subject) };
+    if !text.is_empty() {
+        say(&text);
+        return Ok(());
     }
-    say(&text);
-    Ok(())
+    match shader_file(args, subject)? {
+        Some(path) => file(args, &path),
+        None => match one(table, &header, subject) {
+            text if text.is_empty() => Err(Failure::Usage(unknown(table, &header, subject))),
+            text => {
+                say(&text);
+                Ok(())
+            }
+        },
+    }
 }
 
-/// The file of a shader: a path, or where it is asked for by name, its file here or in the folders of `--path`.
-fn shader_file(
-    args: &InfoArgs,
-    subject: &str,
-    by_name: bool,
-    access: &velour_grammar::files::Access,
-) -> Option<PathBuf> {
-    if subject.ends_with(".osl") || Path::new(subject).is_file() {
-        return Some(PathBuf::from(subject));
-    }
+/// The file of a shader by its name: here, in the folders of `--path`, or in the binary.
+fn shader_file(args: &InfoArgs, subject: &str) -> Result<Option<PathBuf>, Failure> {
     let mut folders = vec![PathBuf::from(".")];
     folders.extend(args.path.iter().cloned());
-    find_shader(subject, &folders, access).filter(|_| by_name)
+    let found = find_shader(subject, &folders, &args.compile.access()?);
+    Ok(found.or_else(|| is_shipped_shader(subject).then(|| PathBuf::from(subject))))
 }
 
 fn file(args: &InfoArgs, path: &Path) -> Result<(), Failure> {
-    let shader = args.compile.compiler()?.compile_file(path).map_err(|error| match error {
-        CompileError::File { .. } => Failure::Usage(error.to_string()),
-        other => Failure::Wrong(other.to_string()),
-    })?;
+    let shader = compile(&args.compile.compiler()?, path)?;
     let mut shader = (*shader.typed).clone();
     if let Some(name) = &args.param {
         shader.params.retain(|param| shader.variables[param.var.0 as usize].name == name.as_str());

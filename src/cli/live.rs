@@ -3,7 +3,7 @@
 use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::keep::Signals;
-use super::speak::say;
+use super::speak::{say, tell};
 use super::threads::capped;
 use super::viewer::viewer;
 use crate::live::{Live, Showing, Source};
@@ -37,7 +37,7 @@ pub struct LiveArgs {
     /// Also show the picture in tev, which listens at 127.0.0.1:14158 unless told otherwise
     #[arg(long, value_name = "HOST[:PORT]")]
     tev: Option<String>,
-    /// Threads; 0 for one a core, and at most four for each
+    /// Threads, at most four a core; 0 for one a core
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
     /// Folders to look for shaders and meshes in, after the scene's own; separated by colons
@@ -79,7 +79,13 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
     let live = Live::start(source, &settings, Showing { resolution, screen, port: args.port, tev })
         .map_err(|error| Failure::Usage(format!("error: {error}")))?;
     say(&format!("http://{}/ shows {}; Ctrl-C ends it\n", live.address(), args.file));
+    let mut told = None;
     loop {
+        let trouble = live.trouble();
+        if trouble != told {
+            tell(&format!("{}\n", trouble.as_deref().map_or("it is right again", str::trim_end)));
+            told = trouble;
+        }
         if let Some(status) = signals.asked() {
             return Err(Failure::Stopped(status));
         }

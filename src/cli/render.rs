@@ -23,7 +23,7 @@ use crate::render::part::Ranges;
 use crate::render::{
     About, Explanation, Filter, Frame, LightChoice, LightPoints, Renderer, Settings, Terminator, output,
 };
-use crate::scene::{Scene, ShaderFiles};
+use crate::scene::{Options, Scene, ShaderFiles};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,13 +39,13 @@ pub struct RenderArgs {
     /// The image, as testrender takes it
     #[arg(value_name = "IMAGE", conflicts_with = "output")]
     image: Option<PathBuf>,
-    /// Threads; 0 for one a core, and at most four for each
+    /// Threads, at most four a core; 0 for one a core
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
     /// Width and height in pixels [default: what the scene states, or 640 480]
     #[arg(short, long, num_args = 2, value_names = ["W", "H"])]
     res: Vec<u32>,
-    /// Set a parameter, NAME of a shader, or NAME, LAYER.NAME or GROUP.LAYER.NAME of a scene: numbers with commas between, or a string
+    /// Set a parameter, NAME of a shader, or NAME, LAYER.NAME, GROUP.NAME or GROUP.LAYER.NAME of a scene: numbers with commas between, or a string
     #[arg(long, num_args = 2, value_names = ["NAME", "VALUE"], allow_hyphen_values = true, action = clap::ArgAction::Append)]
     param: Vec<String>,
     /// Make a sheet of pictures with a parameter at N values, such as roughness 0.1:1:10; a second one goes down
@@ -75,7 +75,7 @@ pub struct RenderArgs {
     /// Render these samples of each pixel alone, such as 64..128, and leave a part for `velour merge`
     #[arg(long, value_name = "A..B", conflicts_with_all = ["spp", "aa", "noise", "time"])]
     samples: Option<Ranges>,
-    /// Render the third of eight shares of all samples (3/8) alone, and leave a part for `velour merge`
+    /// Render share K of N of all samples alone, such as 3/8, and leave a part for `velour merge`
     #[arg(long, value_name = "K/N", conflicts_with_all = ["samples", "noise", "time"])]
     share: Option<Share>,
     /// Go on from this part, which a stopped render or --samples has left; the picture goes there if no other is named
@@ -90,7 +90,7 @@ pub struct RenderArgs {
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u32,
-    /// The most bounces of a path; the scene's own Option wins
+    /// The most bounces of a path [default: what the scene states, or 10]
     #[arg(long, value_name = "N")]
     max_bounces: Option<u32>,
     /// Folders to look for shaders and meshes in, after the scene's own; separated by colons
@@ -99,7 +99,7 @@ pub struct RenderArgs {
     /// Megabytes that textures may take together [default: half of the memory]
     #[arg(long, value_name = "MB")]
     texture_memory: Option<u64>,
-    /// How a base is scaled under its layer: min, view or kelemen
+    /// How a base is scaled under its layer: min, view, kelemen or lossless
     #[arg(long, default_value = "min")]
     layering: Layering,
     /// Shadowing term of sheen: exact, published, ashikhmin or series [default: exact]
@@ -318,7 +318,14 @@ fn warn_of_black(renderer: &Renderer, subject: &Subject) {
 
 /// The settings of the command and the scene together.
 fn settings_for(args: &RenderArgs, scene: &Scene, start: Instant) -> Result<Settings, Failure> {
-    let mut settings = settings(args).with_options(&scene.options);
+    // What the command line says goes before what the scene does.
+    let said = args.spp.is_some() || args.aa.is_some();
+    let options = Options {
+        aa: scene.options.aa.filter(|_| !said),
+        max_bounces: scene.options.max_bounces.filter(|_| args.max_bounces.is_none()),
+        ..scene.options.clone()
+    };
+    let mut settings = settings(args).with_options(&options);
     if let Some(range) = args.samples.as_ref().and_then(|ranges| ranges.iter().next()) {
         (settings.first_sample, settings.samples) = (range.start, range.end);
     }
@@ -335,6 +342,7 @@ fn settings_for(args: &RenderArgs, scene: &Scene, start: Instant) -> Result<Sett
         settings.frame = Some(Frame { size: [settings.width, settings.height], at: [x, y] });
         (settings.width, settings.height) = (width, height);
     }
+    settings.check().map_err(|message| Failure::Usage(format!("error: {message}")))?;
     settings.threads = capped(args.threads);
     settings.seconds = args.time.map(|seconds| time_to_trace(seconds, start, &settings));
     Ok(settings)
@@ -374,8 +382,11 @@ fn debug_pixel(renderer: &Renderer, [x, y]: [u32; 2]) -> Result<(), Failure> {
     if x >= width || y >= height {
         return Err(Failure::Usage(format!("error: there is no pixel {x} {y} in a picture of {width} x {height}")));
     }
-    let mut layer = None;
-    for report in renderer.pixel_reports(x, y) {
+    let (mut layer, reports) = (None, renderer.pixel_reports(x, y));
+    if reports.is_empty() {
+        tell(&format!("no shader says anything at pixel {x} {y}\n"));
+    }
+    for report in reports {
         if layer.as_ref() != Some(&report.place.layer) {
             tell(&format!("layer {} (shader {})\n", report.place.layer, report.place.shader));
             layer = Some(report.place.layer.clone());

@@ -1,6 +1,9 @@
 //! The text of a file, or of standard input, that an argument names.
 
+use super::failure::Failure;
+use crate::compile::{CompileError, Compiler, Shader};
 use crate::limits::SHADER_BYTES;
+use crate::scene::shipped_shader;
 use std::io::Read;
 use std::path::Path;
 use velour_grammar::files::Access;
@@ -8,6 +11,19 @@ use velour_grammar::files::Access;
 /// Does an argument name standard input?
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
+}
+
+/// Compiles the shader of a file, or of the binary where there is no file of the name.
+pub fn compile(compiler: &Compiler, path: &Path) -> Result<Shader, Failure> {
+    let own = Some(path).filter(|path| !compiler.options.access.is_file(path));
+    let compiled = match own.and_then(|path| shipped_shader(path.to_str()?)) {
+        Some((file, text)) => compiler.compile(file, text),
+        None => compiler.compile_file(path),
+    };
+    compiled.map_err(|error| match error {
+        CompileError::File { .. } => Failure::Usage(error.to_string()),
+        other => Failure::Wrong(other.to_string()),
+    })
 }
 
 /// A file's name for messages and what is in it.

@@ -31,11 +31,24 @@ impl Subject<'_> {
             true => Scene::of_shader(Path::new(self.argument), self.search, shaders),
             false => Scene::load(self.argument, self.search, shaders),
         };
-        let scene = scene.map_err(Failure::of_scene)?;
+        let scene = scene.map_err(|error| match self.is_outside(shaders) {
+            Some(root) => Failure::Usage(format!(
+                "error: `{}` lies outside of the sandbox {}, where nothing is read",
+                self.argument,
+                root.display()
+            )),
+            None => Failure::of_scene(error),
+        })?;
         match shaders.unused_params().first() {
             None => Ok(scene),
             Some((path, near)) => Err(self.no_param(path, near.as_deref())),
         }
+    }
+
+    /// The sandbox that the argument's own file is not in, if there is one.
+    fn is_outside<'s>(&self, shaders: &'s ShaderFiles) -> Option<&'s Path> {
+        let (access, path) = (&shaders.compiler.options.access, Path::new(self.argument));
+        access.sandbox().filter(|_| path.is_file() && !access.covers(path))
     }
 
     fn no_param(&self, path: &str, near: Option<&str>) -> Failure {
@@ -45,7 +58,7 @@ impl Subject<'_> {
         let help = match near {
             Some(near) => format!("did you mean `{}`?", strip(near)),
             None if self.is_shader() => "`velour info FILE.osl` lists its parameters".to_owned(),
-            None => "a parameter is called NAME, LAYER.NAME or GROUP.LAYER.NAME".to_owned(),
+            None => "a parameter is called NAME, LAYER.NAME, GROUP.NAME or GROUP.LAYER.NAME".to_owned(),
         };
         Failure::Usage(format!("error: {what} {has} `{}`\n  help: {help}", strip(path)))
     }

@@ -2,6 +2,7 @@
 
 use super::compile::CompileArgs;
 use super::failure::Failure;
+use super::source_file::compile;
 use super::speak::{say, tell};
 use crate::closure::print::tree_text;
 use crate::closure::settings::Shadowing;
@@ -14,7 +15,7 @@ use std::path::PathBuf;
 /// Arguments of `velour tree`.
 #[derive(clap::Args)]
 pub struct TreeArgs {
-    /// A shader file
+    /// A shader file, or the name of a shader in the binary
     file: PathBuf,
     /// Set a parameter: numbers with commas between, or a string
     #[arg(long, num_args = 2, value_names = ["NAME", "VALUE"], allow_hyphen_values = true, action = clap::ArgAction::Append)]
@@ -28,7 +29,7 @@ pub struct TreeArgs {
     /// Surface coordinates of the point
     #[arg(long, num_args = 2, value_names = ["U", "V"], default_values_t = [0.5, 0.5])]
     uv: Vec<f32>,
-    /// How a base is scaled under its layer: min, view or kelemen
+    /// How a base is scaled under its layer: min, view, kelemen or lossless
     #[arg(long, default_value = "min")]
     layering: Layering,
     /// Shadowing term of sheen: exact, published, ashikhmin or series
@@ -46,10 +47,7 @@ pub fn run(args: &TreeArgs) -> Result<(), Failure> {
     if !args.view.is_finite() || args.uv.iter().any(|x| !x.is_finite()) {
         return Err(Failure::Usage("error: --view and --uv take finite numbers".to_owned()));
     }
-    let shader = args.compile.compiler()?.compile_file(&args.file).map_err(|error| match error {
-        crate::compile::CompileError::File { .. } => Failure::Usage(error.to_string()),
-        other => Failure::Wrong(other.to_string()),
-    })?;
+    let shader = compile(&args.compile.compiler()?, &args.file)?;
     let mut builder = shader.group();
     for pair in args.param.chunks(2) {
         builder = builder.text(&pair[0], &pair[1]);

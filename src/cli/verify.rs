@@ -8,11 +8,11 @@ use super::watch::TimeBound;
 use crate::closure::settings::Shadowing;
 use crate::closure::{Layering, Settings};
 use crate::compile::{Compiler, GroupError, Shader};
+use crate::lang::nearest::nearest;
 use crate::limits::SHADER_BYTES;
 use crate::measure::verify::{
     ClosureSubject, Effort, Line, Report, ShaderSubject, Subject, Verdict, cannot_run, verify,
 };
-use crate::scene::nearest;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::Path;
 use std::time::Instant;
@@ -39,7 +39,7 @@ pub struct VerifyArgs {
     /// Threads; 0 for one a core
     #[arg(short, long, default_value_t = 0, value_name = "N")]
     threads: usize,
-    /// How a base is scaled under its layer where the shader does not say: min, view or kelemen
+    /// How a base is scaled under its layer where the shader does not say: min, view, kelemen or lossless
     #[arg(long, default_value = "min")]
     layering: Layering,
     /// Shadowing term of sheen where the shader does not say: exact, published, ashikhmin or series

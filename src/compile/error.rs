@@ -112,6 +112,17 @@ pub enum GroupProblem {
         /// What was given, such as `4 numbers`.
         given: String,
     },
+    /// G0306: some of the numbers of a color, point, vector, normal or matrix, which takes all or one.
+    TooFew {
+        /// The parameter as given.
+        path: String,
+        /// What it takes.
+        wanted: Type,
+        /// How many numbers it needs.
+        room: usize,
+        /// How many were given, such as `2 numbers`.
+        given: String,
+    },
     /// G0303: a number that stands for an int and is none.
     NotAnInt {
         /// The parameter as given.
@@ -153,6 +164,7 @@ impl GroupProblem {
             GroupProblem::NoPart { .. } => "G0203",
             GroupProblem::WrongType { .. } => "G0301",
             GroupProblem::TooMany { .. } => "G0302",
+            GroupProblem::TooFew { .. } => "G0306",
             GroupProblem::NotAnInt { .. } => "G0303",
             GroupProblem::CannotFeed { .. } => "G0304",
             GroupProblem::NotConnectable { .. } => "G0305",
@@ -178,6 +190,9 @@ impl fmt::Display for GroupProblem {
             }
             GroupProblem::TooMany { path, wanted, room, given } => {
                 write!(f, "parameter `{path}` is {} and holds {room}, not {given}", wanted.named())
+            }
+            GroupProblem::TooFew { path, wanted, room, given } => {
+                write!(f, "parameter `{path}` is {} and takes {room} numbers, or one, not {given}", wanted.named())
             }
             GroupProblem::NotAnInt { path, wanted, value } => {
                 write!(f, "parameter `{path}` is {}, and {value} is no int", wanted.named())

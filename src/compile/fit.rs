@@ -58,6 +58,13 @@ pub(super) fn checked_binding(layer: &Layer, name: &str, binding: &Binding) -> R
         let given = what.0.to_owned();
         return Err(param_error(layer, name, GroupProblem::WrongType { path: name.to_owned(), wanted: ty, given }));
     }
+    // One number may stand for all; two are no color.
+    let whole = ty.base().filter(|_| ty.length == Length::Single).map_or(0, Base::components);
+    if matches!(binding, Binding::Numbers(_)) && count > 1 && count < whole {
+        let given = format!("{count} {}", what.1);
+        let problem = GroupProblem::TooFew { path: name.to_owned(), wanted: ty, room: whole, given };
+        return Err(param_error(layer, name, problem));
+    }
     if let Some(room) = capacity(&ty).filter(|room| count > *room) {
         let given = format!("{count} {}", what.1);
         return Err(param_error(layer, name, GroupProblem::TooMany { path: name.to_owned(), wanted: ty, room, given }));
@@ -200,6 +207,8 @@ mod tests {
             ("o[2]", &[5.0], "there is no `o[2]`: index 2 is outside 0..1"),
             ("k", &[1.0, 2.0, 3.0, 4.0], "parameter `k` is a color and holds 3, not 4 numbers"),
             ("n", &[1.5], "parameter `n` is an int, and 1.5 is no int"),
+            ("k", &[1.0, 2.0], "parameter `k` is a color and takes 3 numbers, or one, not 2 numbers"),
+            ("l[1].c", &[1.0, 2.0], "parameter `l[1].c` is a color and takes 3 numbers, or one, not 2 numbers"),
         ] {
             assert_eq!(says(path, numbers), Err(message.to_owned()), "{path}");
         }

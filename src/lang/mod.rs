@@ -4,6 +4,7 @@ pub mod builtins;
 pub mod closures;
 pub mod describe;
 pub mod globals;
+pub mod nearest;
 pub mod path;
 pub mod sentences;
 pub mod symbols;

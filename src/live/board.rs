@@ -57,6 +57,11 @@ impl Board {
         self.bell.notify_all();
     }
 
+    /// A piece as it was put up last.
+    pub fn piece(&self, name: &str) -> Option<Value> {
+        self.lock().pieces.get(name).map(|(_, value)| value.clone())
+    }
+
     /// What is new since `after`; waits until something is, `most` at the longest. A version from elsewhere is as good as none.
     pub fn wait(&self, after: u64, most: Duration) -> News {
         let mut state = self.lock();

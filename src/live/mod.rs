@@ -133,6 +133,11 @@ impl Live {
         Ok(Live { address, server, inbox, board })
     }
 
+    /// What is wrong with the source, if anything, as the page shows it.
+    pub fn trouble(&self) -> Option<String> {
+        self.board.piece("status")?.get("trouble")?.as_str().map(str::to_owned)
+    }
+
     /// The address of the page.
     pub fn address(&self) -> SocketAddr {
         self.address

@@ -171,7 +171,8 @@ impl Session {
                 }
                 Wish::Verify(group) => {
                     if let Some(subject) = &self.subject {
-                        self.trial.begin(subject, group, &self.overrides, self.settings.closure, &self.board);
+                        let settings = (self.settings.closure, self.trouble.is_some());
+                        self.trial.begin(subject, group, &self.overrides, settings, &self.board);
                     }
                 }
                 Wish::Look(at, answer) => looks.push((at, answer)),

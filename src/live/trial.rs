@@ -22,13 +22,14 @@ fn put(board: &Board, value: Value) {
 }
 
 impl Trial {
-    /// Verifies the last shader of a group, with the values that the scene and the page give it, unless one is being verified.
+    /// Verifies the last shader of a group, with the values that the scene and the page give it, unless one is being verified. Where its
+    /// text has a mistake now, the text before it is `stale`.
     pub fn begin(
         &self,
         subject: &Subject,
         group: usize,
         overrides: &Overrides,
-        settings: Settings,
+        (settings, stale): (Settings, bool),
         board: &Arc<Board>,
     ) {
         let Some(part) = subject.parts.get(group) else { return };
@@ -49,7 +50,9 @@ impl Trial {
         let (board, running, fed) = (board.clone(), self.running.clone(), !part.spec.connections.is_empty());
         std::thread::spawn(move || {
             put(&board, json!({"state": "running", "shader": shader.name(), "done": 0, "total": 0}));
-            put(&board, run(&shader, &given, settings, fed, &board));
+            let mut found = run(&shader, &given, settings, fed, &board);
+            found["stale"] = json!(stale);
+            put(&board, found);
             running.store(false, Ordering::Relaxed);
         });
     }

@@ -26,8 +26,13 @@ pub enum SettingsError {
     Batches,
     /// R0106: a render that stops by noise or time and does not begin with its first sample.
     First,
-    /// R0107: a picture that is not inside of its frame.
-    Frame,
+    /// R0107: a picture that is not inside of its frame, or a frame that is too large.
+    Frame {
+        /// One behind the picture's last pixel, x and y.
+        end: [u64; 2],
+        /// Width and height of the frame.
+        size: [u32; 2],
+    },
 }
 
 /// What keeps a scene from being rendered.
@@ -117,7 +122,7 @@ impl SettingsError {
             SettingsError::Seconds => "R0104",
             SettingsError::Batches => "R0105",
             SettingsError::First => "R0106",
-            SettingsError::Frame => "R0107",
+            SettingsError::Frame { .. } => "R0107",
         }
     }
 }
@@ -133,9 +138,11 @@ impl fmt::Display for SettingsError {
             SettingsError::Seconds => f.write_str("the time to stop at must be a number of seconds above 0"),
             SettingsError::Batches => f.write_str("tile size, wave size and batch width must be above 0"),
             SettingsError::First => f.write_str("a render that stops by noise or time begins with sample 0"),
-            SettingsError::Frame => {
-                write!(f, "a picture must lie in its frame, which has {FRAME_SIDE} pixels a side at most")
+            SettingsError::Frame { end, size } if size.iter().all(|side| *side <= FRAME_SIDE) => {
+                let ([right, low], [width, height]) = (end, size);
+                write!(f, "the part of the picture ends at pixel {right} {low}, outside of its {width} x {height}")
             }
+            SettingsError::Frame { .. } => write!(f, "a picture has {FRAME_SIDE} pixels a side at most"),
         }
     }
 }

@@ -271,9 +271,9 @@ impl Settings {
             return Err(SettingsError::Size { width: self.width, height: self.height });
         }
         let Frame { size, at } = self.whole_frame();
-        let fits = |k: usize, side: u32| at[k].checked_add(side).is_some_and(|end| end <= size[k]);
-        if !fits(0, self.width) || !fits(1, self.height) || size[0].max(size[1]) > FRAME_SIDE {
-            return Err(SettingsError::Frame);
+        let end = [u64::from(at[0]) + u64::from(self.width), u64::from(at[1]) + u64::from(self.height)];
+        if (0..2).any(|k| end[k] > u64::from(size[k]) || size[k] > FRAME_SIDE) {
+            return Err(SettingsError::Frame { end, size });
         }
         if self.samples <= self.first_sample {
             return Err(SettingsError::NoSamples);

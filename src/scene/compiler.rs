@@ -3,13 +3,13 @@
 
 use super::error::{SceneError, SceneProblem};
 use super::group::{GroupCompiler, GroupSpec, Layer, ParamType, ParamValue, Usage, Values};
-use super::nearest::nearest;
 use super::overrides::{Overrides, overlap};
-use super::shipped::shipped;
+use super::shipped::{BINARY, shipped};
 use super::source::within;
 use crate::compile::{CompileError, Compiler, GroupBuilder, GroupError, GroupSubject, Recipe, Shader};
 use crate::exec::Group;
-use crate::ir::lower::Binding;
+use crate::ir::lower::{Binding, Lazy};
+use crate::lang::nearest::nearest;
 use crate::lang::types::{Base, Length, Type};
 use crate::limits::SHADER_BYTES;
 use std::collections::HashMap;
@@ -31,9 +31,6 @@ pub struct ShaderFiles {
     declared: Mutex<HashMap<PathBuf, Declared>>,
 }
 
-/// What goes before the name of a shader that must be the binary's own.
-const BINARY: &str = "velour:";
-
 /// Names of shaders and the file of each.
 type Declared = Arc<HashMap<String, PathBuf>>;
 
@@ -51,7 +48,7 @@ impl ShaderFiles {
     }
 
     /// Gives parameters values that go before what scenes say, and before connections. A path is `NAME`, for all layers that have the
-    /// parameter, `LAYER.NAME` or `GROUP.LAYER.NAME`; texts are as [`GroupBuilder::text`] takes them. They take the place of those
+    /// parameter, `LAYER.NAME`, `GROUP.NAME` or `GROUP.LAYER.NAME`; texts are as [`GroupBuilder::text`] takes them. They take the place of those
     /// that were given before; what was compiled stays compiled.
     pub fn set_params(&mut self, values: Vec<(String, String)>) {
         self.overrides = Overrides::new(values);
@@ -228,7 +225,14 @@ impl GroupCompiler for ShaderFiles {
 
     fn compile(&self, spec: &GroupSpec) -> Result<Group, SceneError> {
         let builder = self.builder(spec)?;
-        self.finish(if spec.usage == Usage::Displacement { builder.keep_position() } else { builder }, spec)
+        match spec.usage {
+            // What a layer of a displacement puts out is `P`, so all that move it run, each from where the one before has left it.
+            Usage::Displacement => {
+                let lazy = Lazy { globals: false, ..Lazy::default() };
+                self.finish(builder.keep_position().lazy(lazy), spec)
+            }
+            Usage::Surface | Usage::Volume | Usage::Shader => self.finish(builder, spec),
+        }
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::error::{Place, SceneError, SceneProblem};
 use super::group::{Connection, GroupSpec, Hints, Layer, ParamType, ParamValue, Usage, Values};
-use super::nearest::nearest;
 use super::spec::{Statements, parse_group};
 use super::xml::Element;
+use crate::lang::nearest::nearest;
 use std::path::PathBuf;
 
 const TAGS: [&str; 3] = ["Parameter", "Shader", "ConnectShaders"];

@@ -1,7 +1,7 @@
 //! Values for parameters that go before what a scene says.
 
-use super::nearest::nearest;
 use crate::compile::Shader;
+use crate::lang::nearest::nearest;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
@@ -39,7 +39,10 @@ impl Overrides {
                 found.push((own, text.as_str()));
             }
         }
-        seen.params.extend(shader.params().flat_map(|name| [name.to_owned(), format!("{layer}.{name}")]));
+        let paths = |name: &str| {
+            [name.to_owned(), format!("{layer}.{name}"), format!("{group}.{name}"), format!("{group}.{layer}.{name}")]
+        };
+        seen.params.extend(shader.params().flat_map(paths));
         found
     }
 
@@ -60,7 +63,8 @@ impl Overrides {
 /// What a path may mean in a layer of a group.
 fn own_paths<'p>(path: &'p str, group: &str, layer: &str) -> impl Iterator<Item = &'p str> {
     let inside = |path: &'p str, outer: &str| path.strip_prefix(outer)?.strip_prefix('.');
-    [Some(path), inside(path, layer), inside(path, group).and_then(|path| inside(path, layer))].into_iter().flatten()
+    let of_group = inside(path, group);
+    [Some(path), inside(path, layer), of_group.and_then(|path| inside(path, layer)), of_group].into_iter().flatten()
 }
 
 /// Is one of two paths the other, or a part of it?

@@ -3,7 +3,7 @@
 use super::compiler::ShaderFiles;
 use super::error::{SceneError, SceneProblem};
 use super::scene::Scene;
-use super::shipped::is_shipped_shader;
+use super::shipped::{is_shipped_shader, shipped_scene};
 use super::source::SceneSource;
 use crate::compile::Shader;
 use crate::lang::types::{Base, Length, Type};
@@ -66,7 +66,8 @@ pub fn names_shader(argument: &str) -> bool {
     match path.extension() {
         _ if argument.trim_start().starts_with('<') => false,
         Some(extension) => extension == "osl" || extension == "oso",
-        None => is_shipped_shader(argument) && !path.exists(),
+        // A scene goes before a shader of its name.
+        None => is_shipped_shader(argument) && shipped_scene(argument).is_none() && !path.exists(),
     }
 }
 

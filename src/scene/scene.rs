@@ -8,7 +8,7 @@ use crate::exec;
 use crate::texture::TextureFiles;
 use std::sync::Arc;
 
-/// What the scene's `<Option>`s ask for; they win over the command line, as in testrender.
+/// What the scene's `<Option>`s ask for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// The most bounces of a path.

@@ -1,5 +1,8 @@
 //! Shaders and scenes kept in the binary, so that they are found wherever velour is installed.
 
+/// What goes before the name of a shader that must be the binary's own.
+pub(super) const BINARY: &str = "velour:";
+
 /// File name and text of each, in the order of their names; a file of the same name in a scene's folders wins.
 pub const SHIPPED: [(&str, &str); 12] = [
     ("cloth.osl", include_str!("../../shaders/cloth.osl")),
@@ -39,9 +42,16 @@ pub(super) fn shipped_scene(name: &str) -> Option<(&'static str, String)> {
     Some((file, text.replace("shader ../", "shader ")))
 }
 
-/// Is there a shader of this bare name in the binary?
+/// Is there a shader of this name in the binary?
 pub fn is_shipped_shader(name: &str) -> bool {
-    shipped(name).is_some()
+    shipped_shader(name).is_some()
+}
+
+/// File name and text of a shader that is asked for by its bare name: `cloth`, `cloth.osl` or `cloth.oso`.
+///
+/// `velour:NAME` is the same.
+pub fn shipped_shader(name: &str) -> Option<(&'static str, &'static str)> {
+    shipped(name.strip_prefix(BINARY).unwrap_or(name))
 }
 
 /// File name and text of a shader that is asked for by its bare name: `cloth`, `cloth.osl` or `cloth.oso`.

@@ -2,7 +2,7 @@
 
 use super::error::{Place, SceneError, SceneProblem};
 use super::group::{Connection, Hints, Layer, ParamType, ParamValue, Values};
-use super::nearest::nearest;
+use crate::lang::nearest::nearest;
 use crate::limits::{NUMBERS, SCENE_VALUES};
 
 /// What a group's text holds.

@@ -1,8 +1,8 @@
 //! Elements of the scene's XML, with the place of each attribute and complaints that name what is known.
 
 use super::error::{Place, SceneError, SceneProblem};
-use super::nearest::nearest;
 use super::places::Places;
+use crate::lang::nearest::nearest;
 use crate::limits::{ATTRIBUTES, SCENE_NODES};
 use glam::Vec3;
 use roxmltree::{Attribute, Document, Node, ParsingOptions};

@@ -20,6 +20,8 @@ pub enum TextureError {
     NotFound {
         /// As it was asked for.
         name: String,
+        /// Where it was looked for, besides the working folder.
+        folders: Vec<PathBuf>,
     },
     /// The file is there and cannot be used.
     Unreadable {
@@ -40,7 +42,13 @@ pub enum TextureError {
 impl fmt::Display for TextureError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            TextureError::NotFound { name } => write!(f, "there is no texture `{name}`"),
+            TextureError::NotFound { name, folders } => {
+                write!(f, "there is no texture `{name}` in the working folder")?;
+                folders
+                    .iter()
+                    .filter(|folder| *folder != Path::new("."))
+                    .try_for_each(|folder| write!(f, ", {}", folder.display()))
+            }
             TextureError::Unreadable { path, reason } => {
                 write!(f, "the texture {} cannot be read: {reason}", path.display())
             }

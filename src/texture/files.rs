@@ -69,7 +69,9 @@ impl TextureFiles {
     }
 
     fn load(&self, name: &str) -> Entry {
-        let path = self.find(name).ok_or_else(|| TextureError::NotFound { name: name.to_owned() })?;
+        let path = self
+            .find(name)
+            .ok_or_else(|| TextureError::NotFound { name: name.to_owned(), folders: self.folders.clone() })?;
         let left = self.budget.saturating_sub(self.used.load(Ordering::Relaxed));
         let texture = read_allowed(&path, left, &self.access)?;
         self.used.fetch_add(texture.resident().1 as u64, Ordering::Relaxed);

@@ -117,7 +117,7 @@ impl Host for PatchHost {
     fn texture(&self, name: &str) -> Result<Arc<Texture>, String> {
         self.textures.get(name).map_err(|error| match error {
             // In the words of OpenImageIO.
-            TextureError::NotFound { name } => format!("Could not open file: {name}: No such file or directory"),
+            TextureError::NotFound { name, .. } => format!("Could not open file: {name}: No such file or directory"),
             other => other.to_string(),
         })
     }

@@ -95,7 +95,10 @@ impl Job {
     /// Finds the outputs that were asked for, and says where they go.
     fn find_outputs(&mut self, group: &Group) {
         for (name, file) in &self.options.outputs {
-            let Some((numbers, ints)) = group.output_shape(name) else { continue };
+            let Some((numbers, ints)) = group.output_shape(name) else {
+                say(&format!("Output {name} not found, skipping.\n"));
+                continue;
+            };
             let kept = file.as_os_str() != "null";
             if kept {
                 say(&format!("Output {name} to {}\n", file.display()));

@@ -246,8 +246,8 @@ pub fn parse(args: &[String]) -> Result<Options, Failure> {
         let known = KNOWN.iter().find(|(names, ..)| names.contains(&name));
         let Some((names, words, _)) = known else {
             let all: Vec<&str> = KNOWN.iter().flat_map(|(names, ..)| names.iter().copied()).collect();
-            let hint =
-                crate::scene::nearest(name, &all).map_or(String::new(), |n| format!("; did you mean {}?", dashed(n)));
+            let hint = crate::lang::nearest::nearest(name, &all)
+                .map_or(String::new(), |n| format!("; did you mean {}?", dashed(n)));
             return Err(usage(format!("there is no option {arg}{hint}")));
         };
         let given: Vec<String> = rest.by_ref().take(words.len()).cloned().collect();
@@ -258,6 +258,11 @@ pub fn parse(args: &[String]) -> Result<Options, Failure> {
     }
     if u64::from(options.res[0]) * u64::from(options.res[1]) > 1 << 26 {
         return Err(usage(format!("a grid of {} x {} points is too large", options.res[0], options.res[1])));
+    }
+    // Who asks what an expression is wants to see it.
+    let expression = options.steps.iter().any(|step| matches!(step, Step::Expr(_)));
+    if options.print && options.outputs.is_empty() && expression {
+        options.outputs.push(("result".to_owned(), PathBuf::from("null")));
     }
     Ok(options)
 }

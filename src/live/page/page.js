@@ -265,7 +265,7 @@ function drawVerify() {
     return;
   }
   const given = verify.given.length ? ` with ${verify.given.join(", ")}` : "";
-  verdict.textContent = `${verify.shader}${given}: ${verify.passed ? "nothing fails" : "something FAILS"}${verify.alone ? " (this layer alone)" : ""}`;
+  verdict.textContent = `${verify.shader}${given}: ${verify.passed ? "nothing fails" : "something FAILS"}${verify.alone ? " (this layer alone)" : ""}${verify.stale ? ", in the text before the mistake" : ""}`;
   verdict.classList.add(verify.passed ? "pass" : "FAIL");
   pixel.table(
     by("findings"),
