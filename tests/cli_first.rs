@@ -113,6 +113,26 @@ fn shaders_of_the_binary_are_explained() {
 }
 
 #[test]
+fn what_does_not_parse_hides_nothing_else_and_is_shown_as_it_is_written() {
+    let folder = folder();
+    let text = "float f(float x) { return x + bad; }\nsurface odd(float a = 1)\n{\n    float y = f(a)\n    float z = y;\n    Ci = z * foo * diffuse(N);\n}\n";
+    std::fs::write(folder.path().join("odd.osl"), text).unwrap();
+    let (code, _, error) = say(folder.path(), &["check", "odd.osl"]);
+    for part in [
+        "odd.osl:1:31",
+        "`bad` is not declared",
+        "odd.osl:4:18",
+        "missing `;`",
+        "odd.osl:6:14",
+        "`foo` is not declared",
+    ] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
+    assert!(code == 1 && error.contains("4 │     float y = f(a)\n"), "{error}");
+    assert_eq!(error.matches("error[").count(), 3, "what was declared is known: {error}");
+}
+
+#[test]
 fn what_is_wrong_is_said_with_a_way_out() {
     let folder = folder();
     let says = |arguments: &[&str]| {

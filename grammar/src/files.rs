@@ -2,7 +2,7 @@
 //!
 //! Decision (2026-11-29): a file is opened first and judged by what was opened (its kind, and its true name as the system tells it), instead of
 //! by its name before: whoever may change a link between the look and the opening gains nothing. A file outside of the sandbox looks like
-//! one that is not there, so that no message tells whether there is one.
+//! one that is not there, so that no message tells whether there is one; but for the one that the command line names.
 
 use std::collections::BTreeSet;
 use std::fmt;

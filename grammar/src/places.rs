@@ -2,7 +2,7 @@
 
 use crate::lexer;
 use crate::preprocessor::scan::{self, Kind};
-use crate::source::{NO_CALL, Place, SCRATCH, Sources};
+use crate::source::{NO_CALL, Place, SCRATCH, SourceFile, Sources};
 use crate::span::Span;
 
 /// A range of bytes in a file that was read.
@@ -90,6 +90,16 @@ impl Sources {
     /// The text of a file.
     pub fn text_of(&self, file: u32) -> &str {
         self.table.files.get(file as usize).map_or("", |file| &file.text)
+    }
+
+    /// The same places in another text of the file that was asked for, which has as many bytes: that of its author, where it was parsed
+    /// with a slip mended.
+    pub fn in_text(mut self, text: &str) -> Sources {
+        let table = std::sync::Arc::make_mut(&mut self.table);
+        if let Some(file) = table.files.get_mut(MAIN_FILE as usize).filter(|file| file.text.len() == text.len()) {
+            *file = SourceFile::new(&file.name.clone(), text.into(), file.included_from);
+        }
+        self
     }
 
     /// Is this the text that macros make, which stands in no file?

@@ -97,7 +97,7 @@ pub struct Location {
 }
 
 /// The files, tokens and calls while they are being gathered.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct SourceTable {
     pub files: Vec<SourceFile>,
     pub expanded: Vec<Expanded>,

@@ -245,7 +245,7 @@ impl Checker<'_> {
         };
         if !known.is_empty() && !known.contains(&name.as_str()) {
             let message = format!("`{function}` has no option \"{name}\"");
-            let help = match nearest(name, &known) {
+            let help = match nearest(name, known) {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => format!("its options are {}", known.join(", ")),
             };

@@ -16,6 +16,7 @@ mod merge;
 mod names;
 mod new;
 mod render;
+mod said;
 mod screen;
 mod shade;
 mod share;

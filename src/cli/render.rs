@@ -4,6 +4,7 @@ use super::compile::CompileArgs;
 use super::failure::Failure;
 use super::keep::{Keeping, Signals};
 use super::merge::part_of;
+use super::said::{debug_pixel, pass_on};
 use super::screen::ScreenArgs;
 use super::share::Share;
 use super::sheet::{Sheet, Sweep};
@@ -14,9 +15,7 @@ use super::viewer::{farewell, viewer};
 use super::watch::TimeBound;
 use crate::closure::settings::{Shadowing, SheenAlbedo, SheenSampling};
 use crate::closure::{self, Layering};
-use crate::exec::{Report, ReportKind};
 use crate::files::Room;
-use crate::limits::{PRINTED, PRINTED_BYTES};
 use crate::live::Tev;
 use crate::measure::choose::{Asked, Candidate, Reason, choose};
 use crate::render::part::Ranges;
@@ -323,7 +322,7 @@ fn settings_for(args: &RenderArgs, scene: &Scene, start: Instant) -> Result<Sett
     let options = Options {
         aa: scene.options.aa.filter(|_| !said),
         max_bounces: scene.options.max_bounces.filter(|_| args.max_bounces.is_none()),
-        ..scene.options.clone()
+        ..scene.options
     };
     let mut settings = settings(args).with_options(&options);
     if let Some(range) = args.samples.as_ref().and_then(|ranges| ranges.iter().next()) {
@@ -364,6 +363,9 @@ fn hold(path: &Path, renderer: &Renderer, part: bool) -> Result<Room, Failure> {
 /// Says before the render what could not be written after it.
 fn check_output(args: &RenderArgs, path: &Path) -> Result<(), Failure> {
     let format = output::check(path).map_err(|message| Failure::Usage(format!("error: {message}")))?;
+    if format != output::Format::Png && args.screen.is_given() {
+        tell("note: --view and --exposure are of .png; this file keeps linear light as it is\n");
+    }
     let usage = |text: &str| Err(Failure::Usage(format!("error: {text}")));
     if args.samples.as_ref().is_some_and(|ranges| ranges.iter().count() != 1) {
         return usage("--samples takes one range, such as 64..128\n  help: render the ranges apart and merge them");
@@ -372,26 +374,6 @@ fn check_output(args: &RenderArgs, path: &Path) -> Result<(), Failure> {
         return usage(
             "--samples and --share leave a part of a picture, which is an .exr\n  help: `velour merge part.exr -o picture.png` makes another file of it",
         );
-    }
-    Ok(())
-}
-
-/// Prints what shaders say at a pixel, with the name of the layer before the first word of each.
-fn debug_pixel(renderer: &Renderer, [x, y]: [u32; 2]) -> Result<(), Failure> {
-    let [width, height] = renderer.settings().whole_frame().size;
-    if x >= width || y >= height {
-        return Err(Failure::Usage(format!("error: there is no pixel {x} {y} in a picture of {width} x {height}")));
-    }
-    let (mut layer, reports) = (None, renderer.pixel_reports(x, y));
-    if reports.is_empty() {
-        tell(&format!("no shader says anything at pixel {x} {y}\n"));
-    }
-    for report in reports {
-        if layer.as_ref() != Some(&report.place.layer) {
-            tell(&format!("layer {} (shader {})\n", report.place.layer, report.place.shader));
-            layer = Some(report.place.layer.clone());
-        }
-        pass_on(&[report]);
     }
     Ok(())
 }
@@ -459,29 +441,6 @@ fn chosen(args: &RenderArgs, tolerance: f64, closure: closure::Settings) -> clos
 fn time_to_trace(seconds: f64, start: Instant, settings: &Settings) -> f64 {
     let writing = f64::from(settings.width) * f64::from(settings.height) * 1e-7;
     (seconds - start.elapsed().as_secs_f64() - writing.min(0.5 * seconds)).max(1e-3)
-}
-
-/// Passes on what shaders said.
-fn pass_on(reports: &[Report]) {
-    let mut bytes = 0;
-    let mut fits = |report: &&Report| {
-        bytes += report.text.len();
-        bytes <= PRINTED_BYTES
-    };
-    let told = reports.iter().take(PRINTED).take_while(&mut fits).count();
-    for report in &reports[..told] {
-        match &report.kind {
-            ReportKind::Output => say(&report.text),
-            ReportKind::File(_) => tell(&report.to_string()),
-            ReportKind::Warning | ReportKind::Error | ReportKind::Mistake(_) | ReportKind::Fatal => {
-                tell(&format!("{report}\n"));
-            }
-        }
-    }
-    if reports.len() > told {
-        // How many there would be depends on the threads, each of which stops counting.
-        tell("and more, which are left out\n");
-    }
 }
 
 fn last_line(about: &About, settings: &Settings, path: &std::path::Path, seconds: f64) -> String {

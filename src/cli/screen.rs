@@ -14,6 +14,11 @@ pub struct ScreenArgs {
 }
 
 impl ScreenArgs {
+    /// Is it another one than what nobody asks for?
+    pub fn is_given(&self) -> bool {
+        self.screen() != Screen::default()
+    }
+
     /// The screen they ask for.
     pub fn screen(&self) -> Screen {
         Screen { exposure: self.exposure, view: self.view }

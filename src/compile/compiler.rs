@@ -90,19 +90,24 @@ impl Compiler {
 
     /// Parses and checks a text and gives everything there is to say about it.
     pub fn check(&self, name: &str, text: &str) -> Checked {
-        self.finish(parse(name, text, &self.options))
+        let parsed = parse(name, text, &self.options);
+        // After a syntax error the tree lacks pieces.
+        if parsed.diagnostics.has_errors() { self.check_around(name, text) } else { self.finish(parsed) }
     }
 
     /// The same for the bytes of a file, which may be anything.
     pub fn check_bytes(&self, name: &str, bytes: &[u8]) -> Checked {
-        self.finish(parse_bytes(name, bytes, &self.options))
+        let parsed = parse_bytes(name, bytes, &self.options);
+        match std::str::from_utf8(bytes).ok().filter(|_| parsed.diagnostics.has_errors()) {
+            Some(text) => self.check_around(name, text),
+            None => self.finish(parsed),
+        }
     }
 
     /// The same, with warnings of what works and is odd: variables that nothing reads, or nothing writes.
     pub fn check_closely(&self, name: &str, bytes: &[u8]) -> Checked {
-        let parsed = parse_bytes(name, bytes, &self.options);
         let prelude = self.options.prelude.as_ref().map_or("", |(name, _)| name.as_str());
-        let mut checked = self.finish(parsed);
+        let mut checked = self.check_bytes(name, bytes);
         if let Some(shader) = &checked.shader {
             let mut more = crate::check::unused(&shader.typed);
             let sources = &checked.sources;
@@ -116,7 +121,7 @@ impl Compiler {
     fn finish(&self, parsed: velour_grammar::Parsed) -> Checked {
         let mut diagnostics = parsed.diagnostics;
         let mut shader = None;
-        // After a syntax error the tree lacks pieces, and messages about what is missing would only distract.
+        // What is missing after bytes that are no text would only distract.
         if !diagnostics.has_errors() {
             let (typed, more) = check(&parsed.file, self.closures.table());
             diagnostics.append(more);

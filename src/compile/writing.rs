@@ -13,6 +13,15 @@ impl Compiler {
     /// Says everything there is to say about a text that is being written: what is wrong beside a syntax error too, and what its names
     /// stand for.
     pub fn study(&self, name: &str, text: &str) -> (Checked, Notes) {
+        self.study_closely(name, text, true)
+    }
+
+    /// What is wrong with a text that does not parse, the mistakes beside those of syntax too.
+    pub(super) fn check_around(&self, name: &str, text: &str) -> Checked {
+        self.study_closely(name, text, false).0
+    }
+
+    fn study_closely(&self, name: &str, text: &str, closely: bool) -> (Checked, Notes) {
         let parsed = self.parse_on(name, text);
         let syntax = parsed.diagnostics.has_errors();
         let mut diagnostics = parsed.diagnostics;
@@ -21,7 +30,7 @@ impl Compiler {
             drop_echoes(&mut more, &notes, &parsed.sources);
         }
         diagnostics.append(more);
-        if let Some(typed) = &typed {
+        if let Some(typed) = typed.as_ref().filter(|_| closely) {
             let mut odd = crate::check::unused(typed);
             odd.list.retain(|d| parsed.sources.written(d.span).is_some_and(|at| at.file == MAIN_FILE));
             diagnostics.append(odd);
@@ -66,6 +75,7 @@ impl Compiler {
             again.diagnostics.push(Diagnostic { span: Span { first: token, last: token }, ..diagnostic });
         }
         again.diagnostics.list.sort_by_key(|d| d.span.first);
+        again.sources = again.sources.in_text(text);
         again
     }
 }

@@ -97,11 +97,16 @@ fn params(
     out
 }
 
+/// The double of the fewest digits that is the same single: .05 is .05, and not what a single makes of it.
+pub fn short(x: f64) -> f64 {
+    (x as f32).to_string().parse().unwrap_or(x)
+}
+
 /// An entry of metadata: a number or a text.
 fn metadata(param: &ShaderParam, name: &str) -> Option<Value> {
     let entry: &Metadata = param.metadata.iter().find(|entry| entry.name == name)?;
     match Given::of_constants(&constants(&entry.value)?)? {
-        Given::Numbers(numbers) => numbers.first().filter(|x| x.is_finite()).map(|&x| Value::from(x)),
+        Given::Numbers(numbers) => numbers.first().filter(|x| x.is_finite()).map(|&x| Value::from(short(x))),
         Given::Text(text) => Some(Value::from(text)),
     }
 }

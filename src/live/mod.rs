@@ -24,6 +24,7 @@ mod paths;
 mod pixel;
 mod server;
 mod session;
+mod showing;
 mod source;
 mod stages;
 mod subject;
@@ -32,10 +33,11 @@ mod trial;
 mod values;
 mod watch;
 
+pub use showing::Showing;
 pub use source::Source;
 pub use tev::{TEV_PORT, Tev};
 
-use crate::render::{Screen, Settings};
+use crate::render::Settings;
 use board::Board;
 use inbox::{Inbox, Wish};
 use server::Desk;
@@ -55,19 +57,6 @@ pub struct Live {
     server: Arc<Server>,
     inbox: Arc<Inbox>,
     board: Arc<Board>,
-}
-
-/// How a session is shown.
-#[derive(Debug, Default)]
-pub struct Showing {
-    /// Width and height, which go before what the scene states.
-    pub resolution: Option<[u32; 2]>,
-    /// How light becomes colors, until the page says otherwise.
-    pub screen: Screen,
-    /// The port of the page; [`PORT`], or any if that is taken, where there is none.
-    pub port: Option<u16>,
-    /// A viewer that gets the whole pictures besides.
-    pub tev: Option<Tev>,
 }
 
 /// Why there is no page.

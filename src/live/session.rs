@@ -1,11 +1,11 @@
 //! The session: one thread that sees to wishes, and renders in between.
 
-use super::Showing;
 use super::board::Board;
 use super::controls::{controls, label};
 use super::frame::Frame;
 use super::inbox::{Inbox, Knob, Wish};
 use super::pixel::{DIRECTIONS, pixel};
+use super::showing::Showing;
 use super::source::Source;
 use super::stages::Stages;
 use super::subject::{Overrides, Subject};

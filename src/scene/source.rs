@@ -1,7 +1,8 @@
 //! Where a scene's text comes from, and where the files that it names are looked for.
 
 use super::error::{SceneError, SceneProblem};
-use super::shipped::shipped_scene;
+use super::shipped::{SHIPPED, SHIPPED_SCENES, shipped_scene};
+use crate::lang::nearest::nearest;
 use crate::limits::SCENE_BYTES;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -30,10 +31,15 @@ impl SceneSource {
         }
         let path = Path::new(argument);
         let unreadable = |error: std::io::Error| {
+            let help = help_with(path);
             SceneError::nowhere(SceneProblem::Unreadable { scene: argument.to_owned(), error: Arc::new(error) })
+                .with_help(help)
         };
         if let Some((file, text)) = shipped_scene(argument).filter(|_| !path.exists()) {
             return Ok(SceneSource { name: file.into(), text, folder: ".".into() });
+        }
+        if path.extension().is_some_and(|found| found.eq_ignore_ascii_case("obj")) {
+            return Err(unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, "it is a mesh")));
         }
         let bytes = access.read(path, SCENE_BYTES).map_err(|error| unreadable(error.into()))?;
         let no_text = |_| unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text"));
@@ -43,6 +49,22 @@ impl SceneSource {
             _ => ".".into(),
         };
         Ok(SceneSource { name: argument.into(), text, folder })
+    }
+}
+
+/// What may help who names no scene.
+fn help_with(path: &Path) -> String {
+    let named = |extension: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension));
+    if named("obj") {
+        return "a mesh goes into a scene, as <Model filename=\"…\"/>".to_owned();
+    }
+    let stem = |(file, _): (&'static str, &str)| file.rsplit_once('.').map_or(file, |(stem, _)| stem);
+    let scenes: Vec<&str> = SHIPPED_SCENES.into_iter().map(stem).collect();
+    let known: Vec<&str> = scenes.iter().copied().chain(SHIPPED.into_iter().map(stem)).collect();
+    match nearest(&path.to_string_lossy(), &known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if path.extension().is_none() => format!("the binary has the scenes {}", scenes.join(", ")),
+        None => "a scene is a file of XML, such as `velour new` writes".to_owned(),
     }
 }
 

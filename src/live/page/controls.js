@@ -51,7 +51,8 @@ function number(param, changed) {
   const [low, high] = ends(param);
   const row = make("div", "row");
   const slider = make("input");
-  const step = param.type === "int" ? 1 : (high - low) / 1000;
+  // Some hundreds of steps of round numbers.
+  const step = param.type === "int" ? 1 : 10 ** Math.floor(Math.log10((high - low) / 200));
   Object.assign(slider, { type: "range", min: low, max: high, step, ariaLabel: param.name });
   slider.dataset.name = param.name;
   const box = make("input");
