@@ -1,6 +1,6 @@
 //! The pictures of the README: scenes that are in the binary, and shaders on the ball and the cloth of `velour render my.osl`.
 //!
-//! `cargo run --release --example gallery -- FOLDER 1024` renders them as they are stored; without numbers they are sketches.
+//! `cargo run --release --example gallery -- FOLDER 400` renders them as they are stored; without numbers they are sketches.
 
 use image::codecs::jpeg::JpegEncoder;
 use std::path::{Path, PathBuf};
