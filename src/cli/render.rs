@@ -89,7 +89,7 @@ pub struct RenderArgs {
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u32,
-    /// The most bounces of a path [default: what the scene states, or 10]
+    /// The most bounces of a path [default: what the scene states, or until nothing is left]
     #[arg(long, value_name = "N")]
     max_bounces: Option<u32>,
     /// Folders to look for shaders and meshes in, after the scene's own; separated by colons

@@ -138,7 +138,10 @@ impl Sheet<'_> {
             let (values, words) = self.cell(number);
             if number > 0 {
                 shaders.set_params(values);
-                renderer = changed(renderer, scene, shaders)?;
+                renderer = match changed(renderer, scene, shaders) {
+                    Err(_) if signals.asked().is_some() => break,
+                    next => next?,
+                };
             }
             renderer.finish(&Silent).map_err(Failure::of_render)?;
             let place = [(number % columns) as u32 * width, (number / columns) as u32 * (height + band)];
@@ -172,7 +175,7 @@ fn changed(mut renderer: Renderer, scene: &Scene, shaders: &ShaderFiles) -> Resu
     }
     if moves {
         let scene = Scene { materials, ..scene.clone() };
-        return Renderer::new(&scene, renderer.settings()).map_err(Failure::of_render);
+        return renderer.anew(&scene).map_err(Failure::of_render);
     }
     renderer.set_materials(surfaces).map_err(Failure::of_render)?;
     Ok(renderer)

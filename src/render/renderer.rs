@@ -77,11 +77,23 @@ impl fmt::Debug for Renderer {
 impl Renderer {
     /// Prepares `scene`, of which it keeps a copy that shares geometry and programs; nothing is rendered yet.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, RenderError> {
+        Self::stopped_by(scene, settings, Arc::default())
+    }
+
+    /// A renderer of another scene by the same settings, which the same flag stops, also while it prepares.
+    ///
+    /// # Errors
+    /// The scene cannot be rendered, or it was stopped.
+    pub fn anew(&self, scene: &Scene) -> Result<Self, RenderError> {
+        Self::stopped_by(scene, self.settings(), self.stop().clone())
+    }
+
+    fn stopped_by(scene: &Scene, settings: &Settings, asked: Arc<AtomicBool>) -> Result<Self, RenderError> {
         let start = Instant::now();
         settings.check().map_err(RenderError::Settings)?;
         check_camera(&scene.camera)?;
         let pool = Threads::new(settings.threads)?;
-        let stop = Arc::new(Stop::new(Arc::default()));
+        let stop = Arc::new(Stop::new(asked));
         stop.begin(settings, start);
         let make = || {
             let (moved, whole) = stop.whole(|| displaced(scene, settings, &stop));
