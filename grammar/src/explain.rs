@@ -85,10 +85,13 @@ pub(crate) fn explain(failures: &[Failure], unclosed: &[Unclosed], sources: &Sou
     let mut quiet_until = None;
     let mut shown = 0;
     let mut brackets_seen = HashSet::new();
+    let mut headless = false;
     for failure in failures {
         let at = failure.span.first;
-        let echo =
-            quiet_until.is_some_and(|quiet| at <= quiet) || near(&reported, at) || failure.found == Found::Broken;
+        let echo = quiet_until.is_some_and(|quiet| at <= quiet)
+            || near(&reported, at)
+            || failure.found == Found::Broken
+            || (headless && failure.is_among_items());
         quiet_until = Some(failure.resumed_after.saturating_add(ECHO));
         if echo {
             continue;
@@ -108,6 +111,7 @@ pub(crate) fn explain(failures: &[Failure], unclosed: &[Unclosed], sources: &Sou
             diagnostics.push(message);
             shown += 1;
         }
+        headless |= failure.loses_a_body();
     }
 }
 
@@ -118,6 +122,16 @@ fn near(reported: &[u32], at: u32) -> bool {
 }
 
 impl Failure {
+    /// Is what follows a body without its head, whose statements then stand where only shaders, functions and structs may?
+    fn loses_a_body(&self) -> bool {
+        self.has("{") && !self.has("return")
+    }
+
+    /// Does it stand where only shaders, functions and structs may? A variable there looks like a function without its parenthesis.
+    fn is_among_items(&self) -> bool {
+        self.has("kind") || self.expected == ["("]
+    }
+
     fn has(&self, terminal: &str) -> bool {
         self.expected.iter().any(|e| e == terminal)
     }

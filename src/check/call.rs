@@ -352,6 +352,14 @@ impl Checker<'_> {
         if let Some(diagnostic) = self.wrong_output(candidates, args) {
             return self.report(diagnostic);
         }
+        // What a parameter of a wrong type takes is not known.
+        let unknown = |c: &Candidate| match c {
+            Candidate::User(id) => self.signatures[id.0 as usize].formals.iter().any(|(ty, _)| *ty == Type::VOID),
+            Candidate::Builtin(..) | Candidate::Closure(_) => false,
+        };
+        if candidates.iter().any(unknown) {
+            return;
+        }
         let listed = matches!(args.first(), Some(arg) if arg.ty == Type::VOID);
         let given: Vec<String> = args.iter().map(|arg| arg.ty.to_string()).collect();
         let given = if listed { "a list".to_owned() } else { given.join(", ") };

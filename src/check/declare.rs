@@ -23,6 +23,17 @@ impl Checker<'_> {
         Type::VOID
     }
 
+    /// The type of a variable, a parameter or a field, which has to be one that values have. Void stands for one that is wrong.
+    pub fn type_of_value(&mut self, name: &str, spec: &TypeSpec, array: ArrayLen) -> Type {
+        let ty = self.resolve_type(spec, array);
+        if matches!(spec.base, TypeName::Void) && !spec.closure {
+            let message = format!("`{name}` cannot be of type void");
+            self.error("E0507", spec.span, message, "only functions can be void; give it a type");
+            return Type::VOID;
+        }
+        ty
+    }
+
     fn written_type(&mut self, spec: &TypeSpec, array: ArrayLen) -> Type {
         let base = match &spec.base {
             _ if spec.closure => Base::Closure,
@@ -78,7 +89,7 @@ impl Checker<'_> {
     pub fn declare_struct(&mut self, decl: &StructDecl) {
         let mut fields: Vec<(String, Type)> = Vec::new();
         for field in &decl.fields {
-            let ty = self.resolve_type(&field.ty, field.array);
+            let ty = self.type_of_value(&field.name.name, &field.ty, field.array);
             if fields.iter().any(|(name, _)| *name == field.name.name) {
                 self.error(
                     "E0404",
@@ -145,7 +156,8 @@ impl Checker<'_> {
             return;
         }
         let returns = self.resolve_type(&decl.return_type, ArrayLen::Single);
-        let formals: Vec<_> = decl.params.iter().map(|p| (self.resolve_type(&p.ty, p.array), p.output)).collect();
+        let formals: Vec<_> =
+            decl.params.iter().map(|p| (self.type_of_value(&p.name.name, &p.ty, p.array), p.output)).collect();
         let mut id = self.function_id(decl, &returns, &formals);
         let Some(body) = &decl.body else { return self.note_function(decl, id) };
         if self.bodies[id.0 as usize].is_some() {
@@ -277,7 +289,7 @@ impl Checker<'_> {
     }
 
     fn declare_param(&mut self, param: &Param) -> typed::ShaderParam {
-        let mut ty = self.resolve_type(&param.ty, param.array);
+        let mut ty = self.type_of_value(&param.name.name, &param.ty, param.array);
         let name = &param.name;
         let open = ty.length == Length::Unsized;
         if ty.length == Length::Unsized && param.output {

@@ -62,6 +62,10 @@ impl Checker<'_> {
             Some(Symbol::Var(var)) => {
                 let var = *var;
                 self.note(span, name, Meaning::Variable(var), false);
+                if self.variables[var.0 as usize].ty == Type::VOID {
+                    // Its declaration is wrong, which has been said.
+                    return Expr::error(span);
+                }
                 Expr::new(ExprKind::Var(var), self.variables[var.0 as usize].ty.clone(), span)
             }
             Some(_) => {

@@ -36,7 +36,9 @@ impl Checker<'_> {
                 Some(Symbol::Var(var)) => {
                     let var = *var;
                     self.note(expr.span, name, Meaning::Variable(var), false);
-                    Some(Place { var, path: Vec::new(), ty: self.variables[var.0 as usize].ty.clone() })
+                    let ty = self.variables[var.0 as usize].ty.clone();
+                    // Without a type, its declaration is wrong, which has been said.
+                    (ty != Type::VOID).then_some(Place { var, path: Vec::new(), ty })
                 }
                 _ => {
                     self.check_expr(expr, None);

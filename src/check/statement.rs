@@ -2,7 +2,7 @@
 
 use super::context::Checker;
 use super::typed::{Expr, ExprKind, Place, Stmt};
-use crate::lang::types::{Base, Length, Type};
+use crate::lang::types::{Length, Type};
 use velour_grammar::ast::{self, StmtKind, VarDecl};
 use velour_grammar::{Diagnostic, Span};
 
@@ -140,15 +140,7 @@ impl Checker<'_> {
     }
 
     fn check_declaration(&mut self, decl: &VarDecl, out: &mut Vec<Stmt>) {
-        let mut ty = self.resolve_type(&decl.ty, decl.array);
-        if ty.base() == Some(Base::Void) && !matches!(decl.ty.base, ast::TypeName::Struct(_)) {
-            self.error(
-                "E0507",
-                decl.ty.span,
-                format!("`{}` cannot be of type void", decl.name.name),
-                "only functions can be void; give the variable a type",
-            );
-        }
+        let mut ty = self.type_of_value(&decl.name.name, &decl.ty, decl.array);
         let init = decl.init.as_ref().map(|init| self.check_initial(init, &mut ty));
         if ty.length == Length::Unsized {
             let diagnostic =
