@@ -124,12 +124,16 @@ fn near(reported: &[u32], at: u32) -> bool {
 impl Failure {
     /// Is what follows a body without its head, whose statements then stand where only shaders, functions and structs may?
     fn loses_a_body(&self) -> bool {
-        self.has("{") && !self.has("return")
+        self.has("{") && !self.has("return") && !self.has("int literal")
     }
 
     /// Does it stand where only shaders, functions and structs may? A variable there looks like a function without its parenthesis.
     fn is_among_items(&self) -> bool {
-        self.has("kind") || self.expected == ["("]
+        let variable = matches!(
+            self.found,
+            Found::Sym(Sym::Assign | Sym::Semicolon | Sym::ItemEnd | Sym::Comma | Sym::BracketOpen)
+        );
+        self.has("kind") || (variable && self.expected == ["("])
     }
 
     fn has(&self, terminal: &str) -> bool {
