@@ -3,11 +3,14 @@
 //! `cargo run --release --example closures -- shaders/closures 256` makes the page and its pictures as they are stored; without numbers
 //! the pictures are sketches.
 
-use image::codecs::jpeg::JpegEncoder;
+#[path = "shared/jpeg.rs"]
+mod jpeg;
+
+use jpeg::jpeg;
 use std::path::{Path, PathBuf};
 use velour::closure::Library;
 use velour::lang::describe::closure_markdown;
-use velour::render::{Screen, Settings, Silent, render};
+use velour::render::{Settings, Silent, render};
 use velour::scene::{Scene, ShaderFiles};
 
 /// A family: its title, and its closures, each with what `Ci` is in its picture; nothing for those without one.
@@ -174,8 +177,5 @@ fn picture(shown: &str, samples: Option<u32>) -> Result<Vec<u8>, Box<dyn std::er
     let settings =
         Settings { width: 240 / scale, height: 180 / scale, samples: samples.unwrap_or(1), ..Settings::default() };
     let image = render(&scene, &settings, &Silent)?;
-    let mut out = Vec::new();
-    let (bytes, kind) = (Screen::default().bytes(&image), image::ExtendedColorType::Rgb8);
-    JpegEncoder::new_with_quality(&mut out, 85).encode(&bytes, image.width, image.height, kind)?;
-    Ok(out)
+    Ok(jpeg(&image, 85)?)
 }

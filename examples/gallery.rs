@@ -2,9 +2,12 @@
 //!
 //! `cargo run --release --example gallery -- FOLDER 400` renders them as they are stored; without numbers they are sketches.
 
-use image::codecs::jpeg::JpegEncoder;
+#[path = "shared/jpeg.rs"]
+mod jpeg;
+
+use jpeg::jpeg;
 use std::path::{Path, PathBuf};
-use velour::render::{Image, Screen, Settings, Silent, render};
+use velour::render::{Settings, Silent, render};
 use velour::scene::{Scene, ShaderFiles};
 
 /// Scenes of the binary, and the sizes of their pictures.
@@ -107,19 +110,7 @@ fn picture(
         Settings { width: width / scale, height: height / scale, samples: samples.unwrap_or(1), ..Settings::default() };
     let image = render(scene, &settings, &Silent)?;
     let path = folder.join(format!("{name}.jpg"));
-    std::fs::write(&path, jpeg(&image)?)?;
+    std::fs::write(&path, jpeg(&image, 90)?)?;
     println!("{}", path.display());
     Ok(())
-}
-
-fn jpeg(image: &Image) -> Result<Vec<u8>, image::ImageError> {
-    let mut out = Vec::new();
-    let bytes = Screen::default().bytes(image);
-    JpegEncoder::new_with_quality(&mut out, 90).encode(
-        &bytes,
-        image.width,
-        image.height,
-        image::ExtendedColorType::Rgb8,
-    )?;
-    Ok(out)
 }

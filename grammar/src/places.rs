@@ -97,7 +97,7 @@ impl Sources {
     pub fn in_text(mut self, text: &str) -> Sources {
         let table = std::sync::Arc::make_mut(&mut self.table);
         if let Some(file) = table.files.get_mut(MAIN_FILE as usize).filter(|file| file.text.len() == text.len()) {
-            *file = SourceFile::new(&file.name.clone(), text.into(), file.included_from);
+            *file = SourceFile::new(&file.name, text.into(), file.included_from);
         }
         self
     }

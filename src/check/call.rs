@@ -47,16 +47,10 @@ impl Checker<'_> {
                     }
                 })
                 .collect();
-        if values.iter().any(Expr::is_error) {
-            // That there is no such function does not depend on what it is called with.
-            let known = self.foreign.contains(name.name.as_str()) || !self.candidates(&name.name).is_empty();
-            if !known || matches!(self.lookup(&name.name), Some(Symbol::Var(_))) {
-                self.unknown_function(name);
-            }
-            return Expr::error(span);
-        }
+        let wrong = values.iter().any(Expr::is_error);
         let candidates = self.candidates(&name.name);
-        if candidates.is_empty() && self.foreign.contains(name.name.as_str()) {
+        let foreign = candidates.is_empty() && self.foreign.contains(name.name.as_str());
+        if foreign && !wrong {
             let message = format!("velour has no closure `{}`; it adds nothing", name.name);
             self.report(
                 Diagnostic::warning("W0506", name.span, message).help("`velour info` lists the closures there are"),
@@ -64,8 +58,12 @@ impl Checker<'_> {
             let zero = Expr::new(ExprKind::Int(0), Type::INT, span);
             return Expr::new(ExprKind::Convert(Box::new(zero)), Type::CLOSURE, span);
         }
-        if candidates.is_empty() || matches!(self.lookup(&name.name), Some(Symbol::Var(_))) {
+        // That there is no such function does not depend on what it is called with.
+        if !foreign && (candidates.is_empty() || matches!(self.lookup(&name.name), Some(Symbol::Var(_)))) {
             self.unknown_function(name);
+            return Expr::error(span);
+        }
+        if wrong {
             return Expr::error(span);
         }
         let best = self.best(&candidates, (args, &values), expected, name);

@@ -53,20 +53,15 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         return file(args, Path::new(subject));
     }
     // A word of the language goes before a shader of that name, unless it is asked as of a shader.
-    let text = if about_shader { String::new() } else { one(table, &header, subject) };
-    if !text.is_empty() {
-        say(&text);
-        return Ok(());
-    }
-    match shader_file(args, subject)? {
+    let text = one(table, &header, subject);
+    let shader = if about_shader || text.is_empty() { shader_file(args, subject)? } else { None };
+    match shader {
         Some(path) => file(args, &path),
-        None => match one(table, &header, subject) {
-            text if text.is_empty() => Err(Failure::Usage(unknown(table, &header, subject))),
-            text => {
-                say(&text);
-                Ok(())
-            }
-        },
+        None if text.is_empty() => Err(Failure::Usage(unknown(table, &header, subject))),
+        None => {
+            say(&text);
+            Ok(())
+        }
     }
 }
 

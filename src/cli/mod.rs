@@ -1,4 +1,7 @@
 //! The command line: arguments, subcommands, messages to people. All printing and all exit codes are here.
+//!
+//! Decision (2026-11-30): what the command line says goes before what a scene's `Option` does, because who types a number of samples means it;
+//! instead of the scene before the command line, as testrender has it.
 
 mod chart;
 mod check;

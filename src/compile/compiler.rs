@@ -92,14 +92,14 @@ impl Compiler {
     pub fn check(&self, name: &str, text: &str) -> Checked {
         let parsed = parse(name, text, &self.options);
         // After a syntax error the tree lacks pieces.
-        if parsed.diagnostics.has_errors() { self.check_around(name, text) } else { self.finish(parsed) }
+        if parsed.diagnostics.has_errors() { self.check_around(parsed, name, text) } else { self.finish(parsed) }
     }
 
     /// The same for the bytes of a file, which may be anything.
     pub fn check_bytes(&self, name: &str, bytes: &[u8]) -> Checked {
         let parsed = parse_bytes(name, bytes, &self.options);
         match std::str::from_utf8(bytes).ok().filter(|_| parsed.diagnostics.has_errors()) {
-            Some(text) => self.check_around(name, text),
+            Some(text) => self.check_around(parsed, name, text),
             None => self.finish(parsed),
         }
     }

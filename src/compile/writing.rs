@@ -13,16 +13,16 @@ impl Compiler {
     /// Says everything there is to say about a text that is being written: what is wrong beside a syntax error too, and what its names
     /// stand for.
     pub fn study(&self, name: &str, text: &str) -> (Checked, Notes) {
-        self.study_closely(name, text, true)
+        self.study_closely(parse(name, text, &self.options), name, text, true)
     }
 
     /// What is wrong with a text that does not parse, the mistakes beside those of syntax too.
-    pub(super) fn check_around(&self, name: &str, text: &str) -> Checked {
-        self.study_closely(name, text, false).0
+    pub(super) fn check_around(&self, parsed: Parsed, name: &str, text: &str) -> Checked {
+        self.study_closely(parsed, name, text, false).0
     }
 
-    fn study_closely(&self, name: &str, text: &str, closely: bool) -> (Checked, Notes) {
-        let parsed = self.parse_on(name, text);
+    fn study_closely(&self, parsed: Parsed, name: &str, text: &str, closely: bool) -> (Checked, Notes) {
+        let parsed = self.parse_on(parsed, name, text);
         let syntax = parsed.diagnostics.has_errors();
         let mut diagnostics = parsed.diagnostics;
         let (typed, mut more, notes) = check_noting(&parsed.file, self.closures.table());
@@ -45,9 +45,8 @@ impl Compiler {
         (checked, notes)
     }
 
-    /// Parses a text; where statements lack only their `;` as if it were there, because what does not parse takes the block around it along.
-    fn parse_on(&self, name: &str, text: &str) -> Parsed {
-        let parsed = parse(name, text, &self.options);
+    /// A parsed text; where statements lack only their `;` as if it were there, because what does not parse takes the block around it along.
+    fn parse_on(&self, parsed: Parsed, name: &str, text: &str) -> Parsed {
         let missing: Vec<&Diagnostic> = parsed.diagnostics.list.iter().filter(|d| d.code == "E0302").collect();
         let mut mended = text.as_bytes().to_vec();
         let mut places = Vec::new();

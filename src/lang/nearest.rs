@@ -1,11 +1,11 @@
 //! Which known name a mistyped one may stand for.
 
-/// The known name that is closest to a word, when it is close enough to be meant: one slip in short words, one more for every four
+/// The known name that is closest to a word, when it is close enough to be meant: one slip in short words, one more for every five
 /// letters. Two neighbouring letters that have changed places are one slip; capitals do not count.
 pub fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     let word: Vec<char> = word.to_lowercase().chars().collect();
-    let slips = |name: &&'k str| (slips(&word, &name.to_lowercase().chars().collect::<Vec<_>>()), *name);
-    let (least, name) = known.iter().map(slips).min()?;
+    let off = |name: &&'k str| (slips(&word, &name.to_lowercase().chars().collect::<Vec<_>>()), *name);
+    let (least, name) = known.iter().map(off).min()?;
     // Beyond that a guess confuses more than it helps.
     (least <= 1 + word.len() / 5).then_some(name)
 }

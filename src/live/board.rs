@@ -57,9 +57,9 @@ impl Board {
         self.bell.notify_all();
     }
 
-    /// A piece as it was put up last.
-    pub fn piece(&self, name: &str) -> Option<Value> {
-        self.lock().pieces.get(name).map(|(_, value)| value.clone())
+    /// A text of a piece as it was put up last.
+    pub fn text(&self, piece: &str, entry: &str) -> Option<String> {
+        self.lock().pieces.get(piece)?.1.get(entry)?.as_str().map(str::to_owned)
     }
 
     /// What is new since `after`; waits until something is, `most` at the longest. A version from elsewhere is as good as none.

@@ -98,7 +98,7 @@ fn params(
 }
 
 /// The double of the fewest digits that is the same single: .05 is .05, and not what a single makes of it.
-pub fn short(x: f64) -> f64 {
+fn short(x: f64) -> f64 {
     (x as f32).to_string().parse().unwrap_or(x)
 }
 

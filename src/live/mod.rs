@@ -10,6 +10,9 @@
 //! it at once, in the middle of a shader too, any other one after the wave. What there is to see goes to the board, from where requests
 //! take what is new; they wait there, so that nothing is asked for in vain.
 //!
+//! Decision (2026-11-30): tev gets whole pictures only, because it keeps an image's size and a coarse one in its place would flicker; the
+//! page shows the coarse ones.
+//!
 //! Decision (2026-11-30): one request that waits for whatever is new, the picture's bytes with the words about it, instead of
 //! WebSockets, which `tiny_http` does not do, and of server-sent events, which are text: a reader that is slow gets the newest picture and
 //! misses those in between, and a browser's six connections suffice for five tabs.
@@ -124,7 +127,7 @@ impl Live {
 
     /// What is wrong with the source, if anything, as the page shows it.
     pub fn trouble(&self) -> Option<String> {
-        self.board.piece("status")?.get("trouble")?.as_str().map(str::to_owned)
+        self.board.text("status", "trouble")
     }
 
     /// The address of the page.

@@ -17,6 +17,9 @@ pub const PARTS: usize = 5;
 /// Which of them is alpha.
 pub const ALPHA: usize = 3;
 
+/// Which of them is the weight.
+pub const WEIGHT: usize = 4;
+
 /// Powers of two between the grids of two tiers.
 const STEP: i32 = 30;
 

@@ -11,7 +11,7 @@
 //! Decision (2026-11-29): a tile's sums (13 kB at 16 x 16 pixels) are kept together, because they stay in the nearest cache, where
 //! sums kept apart by source pixel did not.
 
-use super::exact::{self, ALPHA, PARTS, Sums};
+use super::exact::{self, ALPHA, PARTS, Sums, WEIGHT};
 use super::settings::{HALVES, Settings};
 use super::tile::Tile;
 use rayon::prelude::*;
@@ -82,7 +82,7 @@ fn limited(x: f64) -> f32 {
 
 /// The first `channels` numbers of a pixel of these sums, 3 or 4.
 fn means(sum: [f64; PARTS], channels: usize) -> impl Iterator<Item = f32> {
-    let mean = move |k: usize| match if sum[4] > 0.0 { limited(sum[k] / sum[4]) } else { 0.0 } {
+    let mean = move |k: usize| match if sum[WEIGHT] > 0.0 { limited(sum[k] / sum[WEIGHT]) } else { 0.0 } {
         // A clear surface that amplifies makes a sample's share negative.
         alpha if k == ALPHA => alpha.clamp(0.0, 1.0),
         light => light,

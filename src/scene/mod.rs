@@ -2,6 +2,9 @@
 //!
 //! [`Scene::load`] takes a file name, or the XML text itself, and a [`GroupCompiler`] that turns each [`GroupSpec`]
 //! into something that can be run. Everything a user can get wrong ends here, as one [`SceneError`] with a place.
+//!
+//! Decision (2026-11-30): all layers of a displacement group that assign `P` run, in order, because `P` is what such a layer puts out; instead
+//! of the last one alone, as OSL's `lazyglobals` would have it, which takes no account of what a layer moves.
 
 mod build;
 mod camera;

@@ -3,7 +3,7 @@
 use super::compiler::ShaderFiles;
 use super::error::{SceneError, SceneProblem};
 use super::scene::Scene;
-use super::shipped::{is_shipped_shader, shipped_scene};
+use super::shipped::{is_shipped_scene, is_shipped_shader};
 use super::source::SceneSource;
 use crate::compile::Shader;
 use crate::lang::types::{Base, Length, Type};
@@ -67,7 +67,7 @@ pub fn names_shader(argument: &str) -> bool {
         _ if argument.trim_start().starts_with('<') => false,
         Some(extension) => extension == "osl" || extension == "oso",
         // A scene goes before a shader of its name.
-        None => is_shipped_shader(argument) && shipped_scene(argument).is_none() && !path.exists(),
+        None => is_shipped_shader(argument) && !is_shipped_scene(argument) && !path.exists(),
     }
 }
 

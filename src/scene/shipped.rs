@@ -36,10 +36,19 @@ pub const SHIPPED_SCENES: [(&str, &str); 11] = [
 
 /// File name and text of a scene that is asked for by its bare name: `figure1` or `figure1.xml`.
 pub(super) fn shipped_scene(name: &str) -> Option<(&'static str, String)> {
-    let name = name.strip_suffix(".xml").unwrap_or(name);
-    let (file, text) = SHIPPED_SCENES.into_iter().find(|(file, _)| file.strip_suffix(".xml") == Some(name))?;
+    let (file, text) = scene_of(name)?;
     // In their folder, their shaders are one above; in the binary, they are beside.
     Some((file, text.replace("shader ../", "shader ")))
+}
+
+/// Is there a scene of this bare name in the binary?
+pub(super) fn is_shipped_scene(name: &str) -> bool {
+    scene_of(name).is_some()
+}
+
+fn scene_of(name: &str) -> Option<(&'static str, &'static str)> {
+    let name = name.strip_suffix(".xml").unwrap_or(name);
+    SHIPPED_SCENES.into_iter().find(|(file, _)| file.strip_suffix(".xml") == Some(name))
 }
 
 /// Is there a shader of this name in the binary?
@@ -47,9 +56,7 @@ pub fn is_shipped_shader(name: &str) -> bool {
     shipped_shader(name).is_some()
 }
 
-/// File name and text of a shader that is asked for by its bare name: `cloth`, `cloth.osl` or `cloth.oso`.
-///
-/// `velour:NAME` is the same.
+/// File name and text of a shader that is asked for by its bare name or by `velour:NAME`.
 pub fn shipped_shader(name: &str) -> Option<(&'static str, &'static str)> {
     shipped(name.strip_prefix(BINARY).unwrap_or(name))
 }

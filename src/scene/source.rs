@@ -38,7 +38,7 @@ impl SceneSource {
         if let Some((file, text)) = shipped_scene(argument).filter(|_| !path.exists()) {
             return Ok(SceneSource { name: file.into(), text, folder: ".".into() });
         }
-        if path.extension().is_some_and(|found| found.eq_ignore_ascii_case("obj")) {
+        if is_mesh(path) {
             return Err(unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, "it is a mesh")));
         }
         let bytes = access.read(path, SCENE_BYTES).map_err(|error| unreadable(error.into()))?;
@@ -52,10 +52,13 @@ impl SceneSource {
     }
 }
 
+fn is_mesh(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"))
+}
+
 /// What may help who names no scene.
 fn help_with(path: &Path) -> String {
-    let named = |extension: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension));
-    if named("obj") {
+    if is_mesh(path) {
         return "a mesh goes into a scene, as <Model filename=\"…\"/>".to_owned();
     }
     let stem = |(file, _): (&'static str, &str)| file.rsplit_once('.').map_or(file, |(stem, _)| stem);

@@ -152,6 +152,7 @@ pub(super) fn sheen_alone() -> ClosureDef {
     })
     .top_albedo(TopAlbedo::Sheen)
     .without(&[Waiver { only: None, ..SOFTENED }])
+    .formula("f = D G / (4 ci co), as sheen has it, white and over nothing", "Estevez and Kulla 2017")
 }
 
 /// What the keywords of a sheen choose.

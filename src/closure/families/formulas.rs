@@ -4,15 +4,9 @@
 //! vector, `m` a facet's normal; an angle that is not named is that between N and h. `a(w)` is a directional albedo.
 
 /// The formula and the source of a closure; nothing where it stands for no model, or by another name.
-pub(super) fn of(name: &str, params: usize) -> Option<(&'static str, &'static str)> {
-    let found = FORMULAS.iter().find(|(known, ..)| *known == name);
-    // Cycles' sheen of two parameters has the name of ours of four.
-    let found = if (name, params) == ("sheen", 2) { SHEEN_ALONE } else { found.map(|(_, f, s)| (*f, *s))? };
-    Some(found)
+pub(super) fn of(name: &str) -> Option<(&'static str, &'static str)> {
+    FORMULAS.iter().find(|(known, ..)| *known == name).map(|(_, formula, source)| (*formula, *source))
 }
-
-const SHEEN_ALONE: (&str, &str) =
-    ("f = D G / (4 ci co), as sheen has it, white and over nothing", "Estevez and Kulla 2017");
 
 const EMISSION: &str = "L(wo) = weight";
 const LAMBERT: &str = "f = 1 / pi";

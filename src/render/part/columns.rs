@@ -1,10 +1,7 @@
 //! Sums as columns of words, as a file keeps them.
 
-use super::super::exact::{ALPHA, PARTS, Sums, Tier, is_tier, last_tier};
+use super::super::exact::{ALPHA, PARTS, Sums, Tier, WEIGHT, is_tier, last_tier};
 use rayon::prelude::*;
-
-/// Which part of a sum is the weight.
-const WEIGHT: usize = PARTS - 1;
 
 /// Pixels that a thread takes at a time.
 const PIECE: usize = 1 << 14;
